@@ -33,7 +33,12 @@ _MOVED = {
 _GONE = {
     "simulate_limit": "a second run, with half the time_step, shows the error of the step, which "
     "time_step_error of every run estimates",
-    "best_theory": "cb.theories(chain).attrs['best'] is the name of the best theory",
+    "theories": "cb.equilibrium is exact at restitution 1, cb.steady_state is for all others",
+    "best_theory": "cb.equilibrium is exact at restitution 1, cb.steady_state is for all others",
+    "phase_space": "cb.steady_state(chain, correlations=False) is the mean field",
+    "correlated_phase_space": "cb.steady_state(chain) takes its place for every chain",
+    "relax_phase_space": "cb.hydrodynamics(chain, start, duration, velocity_variance='evolving') "
+    "takes every restitution",
 }
 
 

@@ -12,20 +12,16 @@ from .comparison import (
     process_pool as process_pool,
     run_cases as run_cases,
     smooth as smooth,
-    theories as theories,
 )
 from .kinetic import (
     breathing_cloud as breathing_cloud,
     compressed as compressed,
-    correlated_phase_space as correlated_phase_space,
     critical_size as critical_size,
     displaced as displaced,
     equilibrium as equilibrium,
     equilibrium_states as equilibrium_states,
     force_balance as force_balance,
     hydrodynamics as hydrodynamics,
-    phase_space as phase_space,
-    relax_phase_space as relax_phase_space,
     rod_by_rod as rod_by_rod,
     steady_state as steady_state,
 )

@@ -10,7 +10,6 @@ from .fits import (
 )
 from .side_by_side.grid import compare as compare
 from .side_by_side.relaxation import compare_relaxation as compare_relaxation
-from .stationary_theories import theories as theories
 from .sweeps import (
     Sweep as Sweep,
     load_sweep as load_sweep,

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import xarray as xr
 
-from crazybilliards.model.vocabulary import VOCABULARY, chain_of, described, require, unit_of
+from crazybilliards.model.vocabulary import chain_of, require, unit_of
 
 _RAISED = re.compile(r"([_^])(-?[\d.]+|[a-z](?:\+\w)?)(?![a-z])")
 # Variables by their symbols; others by their long names.
@@ -97,18 +97,12 @@ def _set(text: str) -> str:
 def _of_any_rod(dataset: xr.Dataset) -> xr.Dataset:
     """Return the result with the velocity density of a rod that is picked at random.
 
-    A simulation that has all rods has their mean, a kinetic equation int f dy/L.
+    It is the mean over the rods of a result that has all of them.
     """
-    about = described(*VOCABULARY["velocity_density"])
-    if "velocity_density" in dataset:
-        density = dataset.velocity_density
-        if density.sizes.get("particle", 0) != chain_of(dataset).size:
-            return dataset
-        mean = density.mean("particle").assign_attrs(about)
-        names = [name for name in dataset.data_vars if str(name).startswith("velocity_density")]
-        return dataset.drop_vars(names).assign(velocity_density=mean)
-    if "phase_space_density" not in dataset:
+    require(dataset, ("velocity_density",))
+    density = dataset.velocity_density
+    if density.sizes.get("particle", 0) != chain_of(dataset).size:
         return dataset
-    marginal = dataset.phase_space_density.integrate("y")
-    density = marginal / marginal.integrate("velocity")
-    return dataset.assign(velocity_density=density.assign_attrs(about))
+    mean = density.mean("particle").assign_attrs(density.attrs)
+    names = [name for name in dataset.data_vars if str(name).startswith("velocity_density")]
+    return dataset.drop_vars(names).assign(velocity_density=mean)

@@ -46,9 +46,8 @@ def overlay(
         all are drawn as a thin line, and evenly spaced ones also as symbols.
     quantity
         A variable over one dimension, such as x, time, particle, mode or velocity. Densities must
-        be smoothed all or not at all. ``velocity_density`` is that of a rod picked at random,
-        unless one particle was chosen: the mean over all rods of a simulation, the integral over y
-        of a ``phase_space_density``.
+        be smoothed all or not at all. ``velocity_density`` is that of a rod picked at random, the
+        mean over all rods, unless one particle was chosen.
     along
         Abscissa of a quantity over particle: i_n in -1..1, or the mean position of the rods. A
         contact lies at the i_n half way between its rods.
@@ -105,7 +104,7 @@ def _require_same_kind(results: Mapping[str, xr.Dataset], quantity: str) -> None
     """Raise a ValueError if results must not be drawn over one another."""
     if quantity == "density":
         require_same_smoothing(results)
-    of_all = [label for label, dataset in results.items() if quantity not in dataset]
+    of_all = [label for label, dataset in results.items() if "particle" in dataset[quantity].dims]
     single = [  # whose coordinate is one number
         label
         for label, dataset in results.items()

@@ -11,14 +11,7 @@ from typing import Any, TypeVar
 import xarray as xr
 
 from crazybilliards.model import Chain
-from crazybilliards.reproduction.claims.study import (
-    Effort,
-    Quality,
-    Results,
-    Runs,
-    Solution,
-    effort,
-)
+from crazybilliards.reproduction.claims.study import Effort, Results, Runs, Solution, effort
 
 LARGE = 1000  # the paper's longest chains
 SIZES = (10, 30, 100, 300, LARGE)
@@ -63,7 +56,6 @@ _FLIPPERS = effort((4, 1000), (8, 8000))
 _MOST_FLIPPERS = (100, 4.0)
 _FLIPPERS_LONG = effort((4, 1000), (32, 8000))
 _FLIPPERS_AGAIN = effort((4, 300), (4, 1500))
-_CELLS = {"phase_space": 16, "correlated_phase_space": 22}  # of a coarse mesh
 
 Key = TypeVar("Key", bound=Hashable)
 Need = TypeVar("Need", Runs, Solution)
@@ -138,32 +130,27 @@ def all_of(groups: Mapping[Any, Mapping[Any, Need]]) -> list[Need]:
     return [need for group in groups.values() for need in group.values()]
 
 
-def solution(
-    job: str, size: int, restitution: float, damping: float = 1.0, *, quick: bool = True
+def gas(
+    size: int, restitution: float, damping: float = 1.0, *, correlations: bool = True
 ) -> Solution:
-    """Return a theory; quick: on a coarser mesh, half a per cent off, or not at all."""
-    settings: dict[Quality, dict[str, int]] = {"full": {}}
-    if quick:
-        settings["quick"] = {"cells": _CELLS[job]}
+    """Return the steady state of the gas; without correlations its mean field."""
     chain = Chain(size=size, restitution=restitution, damping=damping)
-    name = f"theory {job} L={size} e={restitution:g} gamma={damping:g}"
-    return Solution(name, job, chain, settings)
+    name = f"gas L={size} e={restitution:g} gamma={damping:g} correlations={correlations}"
+    return Solution(name, chain, {"correlations": correlations})
 
 
-# The kinetic equation of 1000 rods, without and with pair correlations, by the restitution.
-INDEPENDENT, PAIRS = "kinetic equation", "with pair correlations"
+# The gas of 1000 rods, in the mean field and with correlations, by the restitution.
+MEAN_FIELD, GAS = "mean field", "gas"
 PREDICTIONS: dict[str, dict[float, Solution]] = {
-    INDEPENDENT: {
-        e: solution("phase_space", LARGE, e, quick=e == 0.95) for e in RESTITUTIONS if e > 0.8
-    },
-    PAIRS: {e: solution("correlated_phase_space", LARGE, e, quick=e == 0.95) for e in RESTITUTIONS},
+    MEAN_FIELD: {e: gas(LARGE, e, correlations=False) for e in RESTITUTIONS if e > 0.8},
+    GAS: {e: gas(LARGE, e) for e in RESTITUTIONS},
 }
-LINES = {INDEPENDENT: "--", PAIRS: "-"}  # in pictures
+LINES = {MEAN_FIELD: "--", GAS: "-"}  # in pictures
 
 
 def predictions(results: Results) -> dict[str, dict[float, xr.Dataset]]:
-    """Return the results of those of ``PREDICTIONS`` that were solved."""
+    """Return the results of ``PREDICTIONS``."""
     return {
-        name: {e: results[one.name] for e, one in solutions.items() if one.name in results}
+        name: {e: results[one.name] for e, one in solutions.items()}
         for name, solutions in PREDICTIONS.items()
     }

@@ -81,7 +81,7 @@ def test_a_result_in_the_place_of_a_chain_is_refused_with_a_hint(name, names):
     for argument in inspect.signature(function).parameters.values():
         if argument.default is argument.empty and argument.name != "chain":
             others[argument.name] = {"gap": [1.0]} if argument.name == "over" else 1.0
-    if name in ("hydrodynamics", "relax_phase_space"):
+    if name == "hydrodynamics":
         others |= {"start": names["exact"], "duration": 1.0}
     with pytest.raises(
         TypeError, match=r"chain must be a Chain, got a Dataset: .*chain_of\(result"

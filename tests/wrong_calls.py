@@ -75,7 +75,7 @@ cb.given_start(walled, chain.anchors + 2) | between the walls: their centres lie
 UNKNOWN = """
 cb.simulate(walled, observe="avalanches") | 'avalanches'...does not know the chain's box
 cb.simulate(sorts, observe="triggered-collisions") | does not know the chain's mass_ratio
-cb.phase_space(walled) | does not know the chain's box: it must be 0...got 12
+cb.steady_state(sorts) | does not know the chain's mass_ratio: it must be 1...got 3
 cb.critical_size(sorts.replace(restitution=1.1)) | does not know the chain's mass_ratio
 cb.breathing_cloud(walled, 1, stretch=0.5) | does not know the chain's box
 cb.displaced(walled, 1) | does not know the chain's box
@@ -87,7 +87,7 @@ cb.comparison.fit_border_power_law(walls) | fit_border_power_law does not know t
 THEORIES = """
 cb.equilibrium_states(chain.replace(restitution=0.8), 4) | chain.replace(restitution=1)
 cb.equilibrium(walled.replace(wall_restitution=0.5)) | elastic walls only
-cb.relax_phase_space(cb.Chain(size=20), crystal, 60) | spikes of a crystal...force_balance
+cb.hydrodynamics(cb.Chain(size=20), crystal, 60) | spikes of a crystal...force_balance
 cb.hydrodynamics(chain, foreign, 1) | start: the density must add up to the chain's 5 rods
 cb.force_balance(chain, displacement=3) | displacement takes a table (x, values)...got 3
 cb.compare_relaxation(chain, every=1e3) | every must be at most
@@ -122,13 +122,13 @@ WRONG_CALLS = [
 # Descriptions of sweeps, and what the message says that refuses each.
 SWEEPS = r"""
 [grid | not a TOML file
-[simulate]\n[phase_space] | one job a sweep
+[simulate]\n[steady_state] | one job a sweep
 [grid]\nsize = 3 | size must be a list
 [grid]\ngap = [3, 3.0] | twice
 [grid]\ngap = [0, 1]\n[chain]\ngap = 2 | gap is given twice
 [grid]\nbox = [0, 20] | box must be above 200, the length of all rods
-[grid]\nmass_ratio = [1, 3]\n[phase_space] | does not know the chain's mass_ratio
+[grid]\nmass_ratio = [1, 3]\n[steady_state] | does not know the chain's mass_ratio
 [grid]\nrestitution = [0.5]\n[equilibrium] | restitution must be 1
-[phase_space]\ncell = 3 | phase_space has no argument 'cell'; did you mean 'cells'?
+[steady_state]\ncorrelation = false | no argument 'correlation'; did you mean 'correlations'?
 """
 WRONG_SWEEPS = [line.replace("\\n", "\n").split(" | ") for line in SWEEPS.strip().splitlines()]

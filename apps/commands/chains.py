@@ -10,14 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from typer import Argument, Option
 
 from crazybilliards.apps.commands.options import Json, Output, Seed, Threads, chain_options, numbers
-from crazybilliards.apps.commands.output import (
-    DIVERGED,
-    answer,
-    complain,
-    conclude,
-    picture,
-    writing_to,
-)
+from crazybilliards.apps.commands.output import DIVERGED, complain, conclude, picture, writing_to
 from crazybilliards.apps.commands.tables import measured_table, rods_table, table
 
 if TYPE_CHECKING:
@@ -27,14 +20,18 @@ if TYPE_CHECKING:
     from crazybilliards.model import Chain
 
 _ERRORS = {
-    "theory": "theory",
     "velocity_width_model_error": "W_v\n[%]",
     "border_model_error": "W_v\nends\n[%]",
     "displacement_width_model_error": "W_x\n[%]",
     "mean_displacement_model_error": "<dx>\n[%]",
     "density_model_error": "rho\n[%]",
-    "expected_seconds": "time\n[s]",
 }
+_OF_WALLS = {"wall_force_model_error": "force on\nwalls\n[%]"}
+_OF_ERRORS = (
+    "Largest errors of the theory on chains like this one: of W_v (particles 3 to L-2; ends: the "
+    "first and the last) and W_x; of <dx>, relative to the thermal length; of the smoothed density "
+    "rho, to close packing. -: not measured."
+)
 
 
 @chain_options()
@@ -111,39 +108,29 @@ def theory(
     *,
     name: str | None = Argument(
         None,
-        help="equilibrium, force_balance, phase_space (the kinetic equation) or "
-        "correlated_phase_space (that with pair correlations); default: the one with the "
-        "smallest expected error for the chain.",
+        help="equilibrium (exact, restitution 1), steady_state (the gas, any restitution) or "
+        "force_balance (of the paper); default: equilibrium if it holds, otherwise steady_state.",
     ),
-    listed: bool = Option(False, "--list", help="Only list the theories, with their errors."),
     output: Output = None,
     as_json: Json = False,
 ) -> None:
     """Predict a chain's steady state from a theory, without a simulation.
 
-    Prints velocity widths and displacements of some rods; draws the density and the rods, of the
-    kinetic equations also the phase-space density f(y, v). Without a name it takes the theory with
-    the smallest expected error, and says which. Refuses where there is no steady state.
+    Prints velocity widths and displacements of some rods, and the errors that the theory states;
+    draws the density and the rods. Refuses where there is no steady state.
 
-    Example: crazybilliards theory --output results --restitution 1.05 --damping 4
+    Example: crazybilliards theory --output results --restitution 0.9 --gap 0.5
     """
     from crazybilliards.comparison.side_by_side import grid_figures as figures
-    from crazybilliards.comparison.stationary_theories import THEORIES, best_theory, theories
+    from crazybilliards.comparison.stationary_theories import THEORIES, theory_of
     from crazybilliards.model import save
     from crazybilliards.model.checks import check_choice
 
-    rows = theories(chain).to_dataframe().reset_index().to_dict("records")
-    if listed:
-        refused = [row for row in rows if not row["takes"]]
-        lines = [f"{row['theory']} does not take the chain: {row['reason']}" for row in refused]
-        answer(as_json, {"theories": rows}, _errors_table(rows), *lines)
-        return
     if name is None:
-        solver = best_theory(chain)
+        solver = theory_of(chain)
     else:
         solver = THEORIES[check_choice("name", name, tuple(THEORIES))]
-    if reason := solver.refusal(chain):
-        raise ValueError(reason)
+    solver.check(chain)
     with writing_to(output):
         result = solver.solve(chain)
         files: dict[str, Any] = {
@@ -151,23 +138,10 @@ def theory(
             "density.png": picture(figures.draw_density_alone, result, solver.title),
             "profile.png": picture(figures.draw_profile, result, solver.title),
         }
-        if "phase_space_density" in result:
-            files["phase_space.png"] = picture(figures.draw_phase_space, result)
         title = f"{solver.title.capitalize()}, L = {chain.size}, e = {chain.restitution:g}"
-        text: list[str | Table] = [title, rods_table(result)]
-        stated = [name for name in ("residual", "mesh_error") if name in result.attrs]
-        text += [f"{name}: {result.attrs[name]:.1e}" for name in stated]
-        text.append(_errors_table([row for row in rows if row["theory"] == solver.name]))
+        columns = _ERRORS | _OF_WALLS if chain.box else _ERRORS
+        errors = table(columns, [result.attrs], _OF_ERRORS)
+        residual = f"residual: {result.attrs['residual']:.1e}"
+        text: list[str | Table] = [title, rods_table(result), residual, errors]
         facts = {"theory": solver.name} | result.to_dict()
         conclude(result, output, files, as_json, facts, *text)
-
-
-def _errors_table(rows: list[dict[Any, Any]]) -> Table:
-    """Return the errors of theories, in the rows that ``crazybilliards.theories`` has for them."""
-    return table(
-        _ERRORS,
-        [row for row in rows if row["takes"]],
-        "Largest errors of the theory on chains like this one: of W_v (particles 3 to L-2; ends: "
-        "the first and the last) and W_x; of <dx>, relative to the thermal length; of the smoothed "
-        "density rho, to close packing. -: not measured. Times on one core, within a factor of 3.",
-    )

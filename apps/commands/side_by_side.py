@@ -58,8 +58,8 @@ def compare(
     """Compare simulated chains with their theories.
 
     Several values of the amplitude, or of the restitution, make as many chains. If all are elastic
-    they are compared with the exact equilibrium and force balances, otherwise with the kinetic
-    equations. Draws everything over one another and prints how far apart it is. After Ctrl-C, a
+    they are compared with the exact equilibrium and force balances, otherwise with the steady state
+    of the gas. Draws everything over one another and prints how far apart it is. After Ctrl-C, a
     crash, or with more chains, the same command computes what FOLDER/cases lacks.
 
     Example: crazybilliards compare --output results --amplitude 1,10 --gap 0.2
@@ -105,10 +105,6 @@ def _comparison_files(tree: xr.DataTree) -> dict[str, Any]:
         files["density.png"] = picture(figures.draw_density, drawn)
         files["displacement.png"] = picture(figures.draw_displacement, drawn)
         files["widths.png"] = picture(figures.draw_widths, drawn)
-    for name, group in tree.children.items():
-        if "phase_space" in group:
-            theory = group["phase_space"].to_dataset()
-            files[f"phase_space_{name}.png"] = picture(figures.draw_phase_space, theory)
     return files
 
 

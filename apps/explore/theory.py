@@ -1,4 +1,4 @@
-"""The best theory of a chain for the page, solved in a process of its own, one at a time."""
+"""The theory of a chain for the page, solved in a process of its own, one at a time."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from urllib.parse import parse_qsl
 from crazybilliards.model.process import end_with_parent
 
 if TYPE_CHECKING:
+    from crazybilliards.comparison.stationary_theories import StationaryTheory
     from crazybilliards.model import Chain
 
 _TURN = Lock()  # one computes at a time, for all pages
@@ -25,7 +26,8 @@ _PATIENCE = 120  # s that a theory may take, and that a visitor waits for the th
 _LOOK = 0.2  # s between two looks whether the visitor still waits
 _MOST_RODS = 200  # of the page
 _MOST_POINTS = 500  # of a curve
-_TOLERANCE = {"tolerance": 0.01}  # of a velocity width, less than a line is thick
+# Errors that a theory states, by what the page calls them.
+_ERRORS = {"error": "velocity_width", "border": "border", "density_error": "density"}
 _KINDS = {"size": int, "restitution": float, "amplitude": float, "damping": float, "gap": float}
 
 Answer = dict[str, Any]
@@ -78,27 +80,26 @@ def read(query: str) -> Chain:
 def answer(query: str) -> Answer:
     """Return the theories of the chain in a query, or why there is none, ``refused``.
 
-    The theories are ``best`` and, at e = 1, the force balance as ``other``: each with its
-    ``title``, the errors that it states (null: not measured) of W_v inside (``error``), at the
-    ``border`` and of the density (``density_error``), ``widths`` in free widths, and the
-    ``density`` as pairs of x and the share of time that a rod covers x, smoothed as in the paper.
+    The theory is ``best``: the gas or, at e = 1, the exact equilibrium, and then the force balance
+    is ``other``. Each has its ``title``, the errors that it states (null: not measured) of W_v
+    inside (``error``), at the ``border`` and of the density (``density_error``), ``widths`` in free
+    widths, and the ``density`` as pairs of x and the share of time that a rod covers x, smoothed as
+    in the paper.
     """
-    from crazybilliards.comparison.stationary_theories import THEORIES, best_theory
+    from crazybilliards.comparison.stationary_theories import THEORIES, theory_of
     from crazybilliards.kinetic.accuracy import UnmeasuredWarning
 
     try:
         chain = read(query)
     except (TypeError, ValueError) as error:
         return {"refused": str(error)}
-    other = THEORIES["force_balance"]
+    best = theory_of(chain)
     # The page shows what is not known.
     with warnings.catch_warnings(action="ignore", category=UnmeasuredWarning):
         try:
-            best = best_theory(chain)
-            coarse = _TOLERANCE if best.name.endswith("phase_space") else {}
-            theories = {"best": _result(best, best.solve(chain, **coarse))}
-            if not other.refusal(chain):
-                theories["other"] = _result(other, other.solve(chain))
+            theories = {"best": _result(best, chain)}
+            if best.name == "equilibrium":
+                theories["other"] = _result(THEORIES["force_balance"], chain)
         except ValueError as error:
             return {"refused": _why_none(chain, str(error))}
     return theories
@@ -108,28 +109,25 @@ def _why_none(chain: Chain, error: str) -> str:
     """Return why there is no theory of a chain, in words for a class."""
     if chain.amplitude == 0:
         return "without noise there is no steady motion"
-    if error.startswith("no steady state"):  # the solver has found out
+    if "collisions give more" in error:  # the solver has found out
         bounds = "fewer rods, a smaller e or more damping bound it"
-        return f"by the kinetic equation its energy grows without bound; {bounds}"
+        return f"by the theory its energy grows without bound; {bounds}"
     way = "; fewer rods, a smaller gap or more noise may help" if chain.gap > 0 else ""
     return f"its equations could not be solved for this chain{way}"
 
 
-def _result(theory: Any, solved: Any) -> Answer:
-    """Return what the page draws and says of a solved theory."""
+def _result(theory: StationaryTheory, chain: Chain) -> Answer:
+    """Solve a theory, and return what the page draws and says of it."""
     from crazybilliards.comparison.coverage import smooth
-    from crazybilliards.model import chain_of
 
-    chain = chain_of(solved)
-    accuracy = theory.accuracy(chain)
+    solved = theory.solve(chain)
     density = smooth(solved).density
     points = density[:: -(-density.x.size // _MOST_POINTS)] * 2 * chain.radius
     widths = solved.velocity_width.values / chain.free_velocity_width
-    errors = {"error": accuracy.velocity_width, "border": accuracy.border}
-    errors["density_error"] = accuracy.density
+    errors = {key: solved.attrs[f"{name}_model_error"] for key, name in _ERRORS.items()}
     return {
         "title": theory.title,
-        **{name: None if math.isnan(error) else error for name, error in errors.items()},
+        **{key: None if math.isnan(error) else error for key, error in errors.items()},
         "widths": widths.round(4).tolist(),
         "density": list(
             zip(points.x.values.tolist(), points.values.round(5).tolist(), strict=True)

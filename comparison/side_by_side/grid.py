@@ -1,4 +1,4 @@
-"""One chain at several values of a parameter: simulated, and solved by its theories."""
+"""One chain at several values of a parameter: simulated, with its theories beside it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from loky import cpu_count
 from numpy.typing import ArrayLike
 
 from crazybilliards.comparison.fits import fit_arctanh
-from crazybilliards.comparison.stationary_theories import THEORIES
+from crazybilliards.comparison.stationary_theories import theory_of
 from crazybilliards.comparison.sweeps import Case, process_pool, run_cases
 from crazybilliards.comparison.sweeps.grid import grid_values
 from crazybilliards.kinetic import equilibrium, force_balance, rod_by_rod
@@ -32,7 +32,7 @@ Folder = str | os.PathLike[str]
 SIMULATION = "simulation"
 # The theories of a comparison, in the order of the pictures; their titles are in TITLES.
 ELASTIC = ("equilibrium", "force_balance", "force_balance_arctanh", "rod_by_rod")
-KINETIC = ("phase_space", "correlated_phase_space")
+GAS = "steady_state"
 
 _REPLICAS = 2
 
@@ -59,9 +59,9 @@ def compare(
         ``{"amplitude": [1, 3, 10, 30]}``. Errors of rounding are taken away, so that
         ``numpy.arange`` gives 0.3 and not 0.30000000000000004.
     folder
-        Folder for the simulations and the kinetic equations, one file each, written as soon as it
-        is done. The same call takes them from there, so nothing is lost when the program is killed.
-        None: a folder that is removed at the end.
+        Folder for the simulations and the steady states of the gas, one file each, written as soon
+        as it is done. The same call takes them from there, so nothing is lost when the program is
+        killed. None: a folder that is removed at the end.
     duration
         Simulated time of each of two replicas [t_0]; 100 000 takes 2 s for 100 rods at e = 1, and
         25 s at e = 0.9.
@@ -81,11 +81,10 @@ def compare(
         functions, results in the common vocabulary, not smoothed. If all chains have e = 1:
         ``equilibrium``, ``force_balance`` (closed by labels, without an input), ``rod_by_rod`` and,
         with springs, ``force_balance_arctanh`` (an arctanh fitted to the simulated displacements,
-        as in the paper). Otherwise ``phase_space``, and ``correlated_phase_space`` where
-        it takes the chain; ``theories`` tells how good they are. A theory that has no steady state
-        is left out, with a warning that gives the reason. ``attrs["status"]`` is ``interrupted`` if
-        Ctrl-C ended it early, and ``diverged`` if a simulation diverged. The tree then holds the
-        results so far.
+        as in the paper). Otherwise, also with inelastic walls, all chains have ``steady_state``,
+        which states its errors. It is left out where it has no solution, with a warning that gives
+        the reason. ``attrs["status"]`` is ``interrupted`` if Ctrl-C ended it early, and
+        ``diverged`` if a simulation diverged. The tree then holds the results so far.
 
     Raises
     ------
@@ -97,13 +96,13 @@ def compare(
     """
     chains = _chains(chain, over)
     settings = {"duration": duration, "replicas": _REPLICAS, "seed": seed_of(seed)}
-    elastic = all(chain.restitution == 1 for chain in chains.values())
+    elastic = all(theory_of(chain).name == "equilibrium" for chain in chains.values())
     cases = {}
     for name, chain in chains.items():
         walls = {"observe": ("widths", "density", "walls")} if chain.box else {}
         cases[name] = {SIMULATION: Case("simulate", chain, settings | walls)}
         if not elastic:
-            cases[name] |= _kinetic_cases(chain)
+            cases[name] |= _gas_cases(chain)
     results, status = _computed(cases, folder, processes, threads, progress)
     if not elastic:
         return _tree(results, status)
@@ -117,12 +116,13 @@ def elastic_tree(runs: Mapping[str, xr.Dataset], status: str = "completed") -> x
     )
 
 
-def _kinetic_cases(chain: Chain) -> dict[str, Case]:
-    """Return the cases of the kinetic equations that take a chain."""
-    refusals = {name: THEORIES[name].refusal(chain) for name in KINETIC}
-    if refusals["phase_space"]:  # which takes nearly every chain
-        _warn_of_no_theory(chain, "phase_space", refusals["phase_space"])
-    return {name: Case(name, chain, {}) for name, refusal in refusals.items() if not refusal}
+def _gas_cases(chain: Chain) -> dict[str, Case]:
+    """Return the case of the gas, if it takes the chain."""
+    try:
+        return {GAS: Case(GAS, chain, {})}
+    except ValueError as error:
+        _warn_of_no_gas(chain, str(error))
+        return {}
 
 
 def _chains(chain: Chain, over: Mapping[str, ArrayLike]) -> dict[str, Chain]:
@@ -176,7 +176,7 @@ def _computed(
     for case, reason in failed.items():
         if case.job == "simulate":
             raise RuntimeError(reason)
-        _warn_of_no_theory(case.chain, case.job, reason.removeprefix("ValueError: "))
+        _warn_of_no_gas(case.chain, reason.removeprefix("ValueError: "))
     results = {name: group for name, group in results.items() if SIMULATION in group}
     if not results:
         raise KeyboardInterrupt
@@ -184,8 +184,8 @@ def _computed(
     return results, "diverged" if diverged and status == "completed" else status
 
 
-def _warn_of_no_theory(chain: Chain, job: str, reason: str) -> None:
-    warn_user(f"e = {chain.restitution:g} has no {THEORIES[job].title}: {reason}")
+def _warn_of_no_gas(chain: Chain, reason: str) -> None:
+    warn_user(f"e = {chain.restitution:g} has no theory: {reason}")
 
 
 def _tree(results: Mapping[str, Mapping[str, xr.Dataset]], status: str) -> xr.DataTree:

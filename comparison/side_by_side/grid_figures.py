@@ -1,4 +1,4 @@
-"""Pictures of chains side by side: densities, displacements, widths, and f(y, v) as an image.
+"""Pictures of chains side by side: densities, displacements and widths.
 
 The panels of densities and displacements have the differences from the exact equilibrium below
 them, which are too small to be seen above; at e != 1 those from the simulation.
@@ -9,10 +9,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
@@ -26,22 +24,20 @@ from crazybilliards.comparison.layout import (
     letter,
     panels,
 )
-from crazybilliards.comparison.side_by_side.grid import ELASTIC, KINETIC, SIMULATION
+from crazybilliards.comparison.side_by_side.grid import ELASTIC, GAS, SIMULATION
 from crazybilliards.comparison.stationary_theories import TITLES
 from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.model import chain_of
-from crazybilliards.model.vocabulary import require
 
-_DECADES = 5  # of f in the image
 _SYMBOLS = {"amplitude": "A", "restitution": "e", "size": "L", "gap": "g", "damping": r"\gamma"}
 _EXACT = TITLES["equilibrium"]
-_THEORIES, _OF_THEORIES = (*ELASTIC, *KINETIC), ("-", "--", ":", "-.", "--", "-")
+_THEORIES, _OF_THEORIES = (*ELASTIC, GAS), ("-", "--", ":", "-.", "-")
 # In a picture of theories, and in one of chains, which have a colour each.
 _LOOKS: dict[str, dict[str, Any]] = {SIMULATION: {"color": "black"}} | {
     TITLES[name]: {"color": colour, "linestyle": dashes}
     for name, colour, dashes in zip(_THEORIES, COLOURS, _OF_THEORIES, strict=False)
 }
-_DASHES = {"equilibrium": "-", "phase_space": "--", "correlated_phase_space": "-"}
+_BEST = ("equilibrium", GAS)  # a comparison has one of them
 _LEAST_DRAWN = 1e-4  # of close packing: pictures of densities end where they are lower
 
 
@@ -114,9 +110,9 @@ def _reference(results: dict[str, xr.Dataset]) -> str:
 
 
 def _draw_best(ax: Axes, results: dict[str, xr.Dataset], quantity: str) -> None:
-    """Draw the simulation and the exact equilibrium, or the last of the other theories."""
-    best = _EXACT if _EXACT in results else list(results)[-1]
-    shown = {name: results[name] for name in (best, SIMULATION)}
+    """Draw the simulation and the exact equilibrium or the gas, of which a comparison has one."""
+    titles = (*(TITLES[name] for name in _BEST), SIMULATION)
+    shown = {name: results[name] for name in titles if name in results}
     looks = {name: _LOOKS[name] for name in shown}
     overlay(shown, quantity, along="mean_position", ax=ax, style=looks)
     ax.set_xlabel("")
@@ -152,13 +148,13 @@ def draw_widths(tree: xr.DataTree) -> Figure:
         units = {"velocity_width": chain.free_velocity_width, "mean_displacement": length}
         for ax, (name, unit) in zip(axes, units.items(), strict=True):
             draw_rods(ax, run, name, unit=unit, number=number, label=_varied(group))
-            for key, dashes in _DASHES.items():
+            for key in _BEST:
                 if key in group:
-                    look = {"color": COLOURS[number % len(COLOURS)], "linestyle": dashes}
-                    _draw_theory(ax, group[key].to_dataset(), name, unit, **look)
-    for key, dashes in _DASHES.items():
+                    colour = COLOURS[number % len(COLOURS)]
+                    _draw_theory(ax, group[key].to_dataset(), name, unit, color=colour)
+    for key in _BEST:
         if any(key in group for group in tree.children.values()):
-            axes[0].plot([], [], dashes, color="0.4", label=TITLES[key])
+            axes[0].plot([], [], color="0.4", label=TITLES[key])
     axes[0].set(ylabel="velocity width $W_v/W$")
     axes[1].set(ylabel=rf"displacement $\langle\Delta x\rangle/{symbol}$")
     _finish_rods(axes)
@@ -188,43 +184,6 @@ def _draw_theory(
     x = theory.x if quantity == "density" else theory.normalized_particle
     ax.plot(x, values, **look)
     ax.fill_between(x, values - error, values + error, color=look["color"], alpha=0.15, linewidth=0)
-
-
-def draw_phase_space(theory: xr.Dataset) -> Figure:
-    """f(y, v) over five decades, in units of the free rod, with the width of v at each y."""
-    require(theory, ("phase_space_density",))
-    chain = chain_of(theory)
-    s, W = chain.thermal_length, chain.free_velocity_width
-    f = theory.phase_space_density * (s * W / chain.size)
-    y, v = theory.y / s, theory.velocity / W
-    highest = float(f.max())
-    floor = highest * 10.0**-_DECADES
-    figure, [ax] = panels(1, 1, height=2.7)
-    image = ax.pcolormesh(
-        y,
-        v,
-        np.maximum(f.values.T, floor),
-        norm=LogNorm(floor, highest),
-        shading="gouraud",
-        rasterized=True,
-    )
-    density = f.integrate("velocity")
-    alive = density.values > 1e-4 * float(density.max())
-    square = (f * theory.velocity**2).integrate("velocity") / density
-    width = np.sqrt(square[alive]) / W
-    ax.plot(y[alive], width, color="white", label=r"$\pm\langle v^2\rangle^{1/2}$ at $y$")
-    ax.plot(y[alive], -width, color="white")
-    above = f.where(f > floor, drop=True)
-    ax.set(
-        xlim=(above.y[0] / s, above.y[-1] / s),
-        ylim=(above.velocity[0] / W, above.velocity[-1] / W),
-        xlabel="reduced position $y/s$",
-        ylabel="velocity $v/W$",
-        title=rf"$L = {chain.size}$, $e = {chain.restitution:g}$, $\gamma = {chain.damping:g}$",
-    )
-    ax.legend(loc="upper right", labelcolor="white")
-    figure.colorbar(image, ax=ax, label=r"$f(y, v)\; s W/L$")
-    return figure
 
 
 def draw_profile(theory: xr.Dataset, name: str) -> Figure:

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
+from crazybilliards.kinetic.accuracy import expected
 from crazybilliards.kinetic.gas.agreement import Fluctuations, Steady
 from crazybilliards.kinetic.gas.cells import at_distance, of_rods
 from crazybilliards.kinetic.gas.fluctuations import dissipation
@@ -69,7 +70,7 @@ def in_vocabulary(chain: Chain, found: Steady) -> xr.Dataset:
     )
     resolved = are_resolved(chain)
     dataset.attrs |= {"density_of": OF_RODS if resolved else OF_FLUID}
-    dataset.attrs |= {"iterations": found.iterations}
+    dataset.attrs |= {"iterations": found.iterations, **expected("steady_state", chain).named()}
     return dataset
 
 

@@ -135,7 +135,8 @@ def _mapped(rods: RodPlaces, places: Array, slope: Array) -> RodPlaces:
 def at_temperature(chain: Chain, temperature: float) -> Chain:
     """Return the elastic chain with this temperature, to three digits, which few chains have."""
     ratio = float(f"{temperature / chain.temperature:.3g}")
-    return chain.replace(restitution=1.0, amplitude=chain.amplitude * math.sqrt(ratio))
+    amplitude = chain.amplitude * math.sqrt(ratio)
+    return chain.replace(restitution=1.0, wall_restitution=1.0, amplitude=amplitude)
 
 
 @lru_cache(maxsize=4)

@@ -18,7 +18,7 @@ class Covariances(Averaged):
     ``velocity_width`` is. ``gap_covariance`` is <g_i g_{i+r}> - <g_i><g_{i+r}> over contact i and
     separation r, with the free room g_i between the rods i and i + 1, and ``mean_gap`` is <g_i>.
     Where i + r lies beyond the chain there is NaN. Over the contacts it gives what
-    ``correlated_phase_space`` predicts: ``neighbour_covariance`` <v_i v_{i+1}> and
+    ``steady_state`` predicts: ``neighbour_covariance`` <v_i v_{i+1}> and
     ``relative_temperature`` <(v_i - v_{i+1})^2>/2.
 
     The sums take 8 (2 separations + 3) L bytes per block. With as many separations as there are

@@ -43,7 +43,7 @@ class Impacts(Averaged):
 
         contact_loss = (2/sqrt(pi)) (1 - e) contact_force sqrt(contact_temperature),
 
-    exactly as long as no rods merge, and ``correlated_phase_space`` has F sqrt(Theta) for the root.
+    exactly as long as no rods merge, and ``steady_state`` has F sqrt(Theta) for the root.
 
     The means of w and w^2 alone depend on the time step, because rods that noise holds together
     collide ever more often, at ever smaller speeds. Their ratio has a limit. Clusters count as

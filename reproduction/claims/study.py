@@ -96,18 +96,15 @@ class Runs:
 
 
 class Solution(NamedTuple):
-    """A theory of one chain, solved at the qualities for which there are settings."""
+    """The steady state of the gas of one chain, the same at both qualities."""
 
     name: str
-    job: str
     chain: Chain
-    settings: Mapping[Quality, Mapping[str, Any]]
+    settings: Mapping[str, Any]
 
     def cases(self, quality: Quality) -> dict[str, Case]:
         """Return its case, which has its name."""
-        if quality not in self.settings:
-            return {}
-        return {self.name: Case(self.job, self.chain, self.settings[quality])}
+        return {self.name: Case("steady_state", self.chain, self.settings)}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -241,7 +241,7 @@ def _draw_by_restitution(results: Results) -> Figure:
                 shift = theories[e].mean_displacement / _S
                 line: Any = {"color": COLOURS[number], "linestyle": chains.LINES[name]}
                 whole.plot(shift.normalized_particle, shift, **line)
-                border.plot(run.particle.isel(left), shift.isel(left), **line)
+                border.plot(shift.particle.isel(left), shift.isel(left), **line)
     along_the_chain(whole)
     whole.set(ylabel=label, ylim=(-_FRAME, _FRAME))
     mark_clipped(whole)
@@ -257,8 +257,8 @@ BY_RESTITUTION = Study(
     title="Mean displacements for several restitutions",
     caption="Mean displacement, L = 1000, in units of the thermal length s, (a) of all rods "
     "against the normalized particle number, (b) of the left half against the rod's number. Lines: "
-    "the kinetic equation, dashed without pair correlations, full with them. Triangles at the "
-    "frame of (a): rods beyond it, which (b) shows.",
+    "the gas, dashed in the mean field, full with correlations. Triangles at the frame of (a): "
+    "rods beyond it, which (b) shows.",
     needs=[*chains.all_of(chains.PREDICTIONS), *chains.all_of(_STEPS)],
     claims=_claims_by_restitution,
     draw=_draw_by_restitution,

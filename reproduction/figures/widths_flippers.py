@@ -40,7 +40,7 @@ _RESTITUTION = 1.05
 def _figure(
     results: Results, curves: Mapping[str, tuple[Runs, Solution, float]], ylabel: str
 ) -> Figure:
-    """Return W_v(i) of runs as symbols and of the kinetic equation as lines, in one panel.
+    """Return W_v(i) of runs as symbols and of the gas as lines, in one panel.
 
     ``curves`` has by label the runs, the theory, and the unit of their widths.
     """
@@ -51,7 +51,7 @@ def _figure(
         ax.plot(solved.normalized_particle, solved.velocity_width / unit, color=COLOURS[number])
     along_the_chain(ax)
     ax.set_ylabel(ylabel)
-    ax.plot([], [], color="0.4", label="kinetic equation")
+    ax.plot([], [], color="0.4", label="gas")
     legend_above(figure, ax)
     return figure
 
@@ -64,9 +64,7 @@ _WEAK, _STRONG = _DAMPINGS[0], _DAMPINGS[-1]
 _BY_DAMPING = chains.at_both_steps(
     {damping: chains.flippers(_SIZE, damping) for damping in _DAMPINGS}
 )
-_DAMPED = {
-    damping: chains.solution("phase_space", _SIZE, _RESTITUTION, damping) for damping in _DAMPINGS
-}
+_DAMPED = {damping: chains.gas(_SIZE, _RESTITUTION, damping) for damping in _DAMPINGS}
 _claim_by_damping = partial(
     Claim, source="section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq"
 )
@@ -166,7 +164,8 @@ BY_DAMPING = Study(
     name="widths-damping",
     title="Velocity widths of flippers for several dampings",
     caption="Damping times velocity width against the normalized particle number, L = 100, e = "
-    "1.05. Lines: the kinetic equation.",
+    "1.05. Lines: the gas. It does not know the heavy tails of the velocities: where they make the "
+    "profile convex, its ends are too cold.",
     needs=[*chains.all_of(_BY_DAMPING), *_DAMPED.values()],
     claims=_claims_by_damping,
     draw=_draw_by_damping,
@@ -178,7 +177,7 @@ _DAMPING = 4.0
 _SIZES = (25, 50, 75, 100, 105)
 _SHORT, _LONG = _SIZES[0], _SIZES[-1]
 _BY_LENGTH = chains.at_both_steps({size: chains.flippers(size, _DAMPING) for size in _SIZES})
-_OF_LENGTH = {size: chains.solution("phase_space", size, _RESTITUTION, _DAMPING) for size in _SIZES}
+_OF_LENGTH = {size: chains.gas(size, _RESTITUTION, _DAMPING) for size in _SIZES}
 _DIVERGING = Runs(
     "unsteady",
     Chain(size=150, restitution=_RESTITUTION, damping=_DAMPING),
@@ -239,8 +238,9 @@ BY_LENGTH = Study(
     number=14,
     name="widths-size",
     title="Velocity widths of flippers for several sizes",
-    caption="W_v against the normalized particle number, e = 1.05, gamma = 4. Lines: the kinetic "
-    "equation. Longer chains have no steady state: L = 150 diverges.",
+    caption="W_v against the normalized particle number, e = 1.05, gamma = 4. Lines: the gas. It "
+    "does not know the heavy tails of the velocities: where they make the profile convex, its ends "
+    "are too cold. Longer chains have no steady state: L = 150 diverges.",
     needs=[*chains.all_of(_BY_LENGTH), *_OF_LENGTH.values(), *_UNSTEADY.values()],
     claims=_claims_by_length,
     draw=_draw_by_length,

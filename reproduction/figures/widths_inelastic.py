@@ -30,9 +30,7 @@ _FREE = Chain().free_velocity_width
 
 _SIZES = (30, 100, 300, chains.LARGE)
 _STEPS = chains.inelastic_at_steps(_SIZES)
-_PAIRS = {
-    size: chains.solution("correlated_phase_space", size, 0.0, quick=size == 30) for size in _SIZES
-}
+_GAS = {size: chains.gas(size, 0.0) for size in _SIZES}
 _CROSS: dict[str, Any] = {"marker": "+", "linestyle": "none"}  # of the theory
 _NU, _PRECISION = -0.46, 0.005  # "nu ~ -0.46": half a unit of the last digit
 _SAME = 2 * _PRECISION  # two numbers that are both written -0.46 differ by less
@@ -112,11 +110,11 @@ def _draw_along(results: Results) -> Figure:
         draw_rods(widths, run, "velocity_width", unit=_FREE, **look)
         i = np.geomspace(1, size, 200)
         widths.plot(i, fit_border_power_law(run)(i) / _FREE, color=COLOURS[number])
-        if theory := results.get(_PAIRS[size].name):
-            width = theory.velocity_width / _FREE
-            widths.plot(theory.particle, width, ":", color=COLOURS[number], zorder=4)
+        theory = results[_GAS[size].name]
+        width = theory.velocity_width / _FREE
+        widths.plot(theory.particle, width, ":", color=COLOURS[number], zorder=4)
     widths.plot([], [], color="0.4", label="fit of two power laws")
-    widths.plot([], [], ":", color="0.4", label="theory with pairs")
+    widths.plot([], [], ":", color="0.4", label="gas")
     widths.legend(loc="lower left")
     widths.set(xlabel="particle $i$", ylabel="velocity width $W_v/W$")
     _draw_exponents(exponents, results)
@@ -134,14 +132,13 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
         values, errors = np.transpose([exponents[step] for step in sorted(exponents)])
         look: Any = {"number": number, "linewidth": 0.8, "linestyle": "-"}
         draw_points(ax, sorted(exponents), values, errors, **look)
-        if theory := results.get(_PAIRS[size].name):
-            at = margin * 1.25 ** (number - 1.5)  # beside one another
-            ax.plot(at, nu(theory), **_CROSS, color=COLOURS[number])
+        at = margin * 1.25 ** (number - 1.5)  # beside one another
+        ax.plot(at, nu(results[_GAS[size].name]), **_CROSS, color=COLOURS[number])
     ax.axhline(_NU, color="0.4", linestyle="--", label="paper")
-    ax.plot([], [], **_CROSS, color="0.4", label="theory with pairs")
+    ax.plot([], [], **_CROSS, color="0.4", label="gas")
     ax.legend(loc="upper right")
     ax.set(xscale="log", xlabel="time step $dt$ [$t_0$]", ylabel=r"exponent $\nu$")
-    ax.set_xticks([margin, 1e-3, 1e-2], ["theory", "$10^{-3}$", "$10^{-2}$"])
+    ax.set_xticks([margin, 1e-3, 1e-2], ["gas", "$10^{-3}$", "$10^{-2}$"])
     ax.set_xlim(0.5 * margin, 4e-2)
 
 
@@ -155,10 +152,9 @@ ALONG = Study(
     name="widths-inelastic",
     title="Velocity widths at e = 0: power laws from both borders",
     caption="(a) W_v against the rod's number, e = 0, at the default time step, with the fits a "
-    "[(i - c)^nu + (L + 1 - c - i)^nu] to all rods; dotted, in (b) crosses: the kinetic equation "
-    "with pair correlations. (b) The exponent against the time step; the leftmost symbol of each "
-    "size is the default step.",
-    needs=[*chains.all_of(_STEPS), *_PAIRS.values()],
+    "[(i - c)^nu + (L + 1 - c - i)^nu] to all rods; dotted, in (b) crosses: the gas. (b) The "
+    "exponent against the time step; the leftmost symbol of each size is the default step.",
+    needs=[*chains.all_of(_STEPS), *_GAS.values()],
     claims=_claims_along,
     draw=_draw_along,
 )

@@ -26,8 +26,8 @@ _STEPS = chains.at_both_steps(_RUNS)
 _UNIT = chains.ELASTIC.chain.free_velocity_width
 _PRECISION = 0.005  # of exponents: the paper gives them with two decimals
 _CROSSES: dict[str, dict[str, Any]] = {
-    chains.INDEPENDENT: {"marker": "x", "linestyle": "none", "color": COLOURS[4]},
-    chains.PAIRS: {"marker": "+", "linestyle": "none", "color": COLOURS[2]},
+    chains.MEAN_FIELD: {"marker": "x", "linestyle": "none", "color": COLOURS[4]},
+    chains.GAS: {"marker": "+", "linestyle": "none", "color": COLOURS[2]},
 }
 
 
@@ -136,7 +136,7 @@ def _draw_widths(ax: Axes, results: Results) -> None:
 def _draw_by_restitution(
     ax: Axes, results: Results, quantity: Callable[[xr.Dataset], float]
 ) -> None:
-    """Draw a quantity of the simulations and of both theories against e."""
+    """Draw a quantity of the simulations, of the gas and of its mean field against e."""
     values, errors = np.transpose([runs.estimate(results, quantity) for runs in _RUNS.values()])
     draw_points(ax, list(_RUNS), values, errors, number=0, color="black", label="simulation")
     for name, theories in chains.predictions(results).items():
@@ -149,9 +149,9 @@ RESTITUTION = Study(
     name="widths-restitution",
     title="Velocity widths for several restitutions",
     caption="(a) W_v against the normalized particle number, L = 1000 (e = 1: L = 100). Lines: the "
-    "kinetic equation in the colour of its e, dashed without pair correlations, full with them; "
-    "nothing of the simulation goes into these lines. (b) The exponent of the two power laws "
-    "against the restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in the centre.",
+    "gas in the colour of its e, dashed in the mean field, full with correlations; nothing of the "
+    "simulation goes into these lines. (b) The exponent of the two power laws against the "
+    "restitution, and a exp(-lambda (1 - e)) + d fitted to it. (c) W_v in the centre.",
     needs=[*chains.all_of(_STEPS), *chains.all_of(chains.PREDICTIONS), chains.ELASTIC],
     claims=_claims,
     draw=_draw,

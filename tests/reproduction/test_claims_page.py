@@ -44,10 +44,10 @@ def test_every_case_can_be_carried_out_and_shared_ones_count_once(quality):
 
 def test_parameters_are_described_by_what_is_not_the_default():
     runs = Runs("a", Chain(size=30, restitution=0.0), effort((3, 100), (3, 100)), {})
-    theory = Case("phase_space", Chain(restitution=0.9), {"cells": 16})
+    theory = Case("steady_state", Chain(restitution=0.9), {"correlations": False})
     assert describe([*runs.cases("quick").values(), theory]) == [
         "simulate: size 30, restitution 0, duration 100 (3 runs)",
-        "phase_space: restitution 0.9, cells 16",
+        "steady_state: restitution 0.9, correlations False",
     ]
 
 

@@ -58,7 +58,7 @@ def require_clear(status, printed):
 
 
 @pytest.mark.filterwarnings("ignore:amplitude=0 and a start at rest")
-@pytest.mark.filterwarnings("ignore:.* has no (arctanh fit|kinetic equation|force balance)")
+@pytest.mark.filterwarnings("ignore:.* has no (arctanh fit|theory)")
 @pytest.mark.filterwarnings("ignore:stiffness=0. nothing ties the rods")
 @pytest.mark.parametrize(("command", "option"), OPTIONS)
 def test_an_option_is_taken_or_refused_in_one_line(command, option, monkeypatch, capsys):

@@ -66,7 +66,7 @@ import crazybilliards as cb
 chain = cb.Chain(size=10)
 cb.load(cb.save(cb.simulate(chain, duration=100.0), "run.nc"))
 cb.equilibrium(chain), cb.force_balance(chain)
-cb.phase_space(chain.replace(restitution=0.95), cells=16)
+cb.steady_state(chain.replace(restitution=0.95))
 """
 
 

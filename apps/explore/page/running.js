@@ -172,7 +172,7 @@ const ChainRunning = (() => {
   }
 
   /* Above e = 1: the rate at which the energy has grown, by least squares, and where simulations confirm
-     it to 5 % that of kinetic_equation/weak_damping.py. */
+     it to 5 % that of kinetic/gas/criticality.py. */
   function growthRates() {
     const points = world.history.filter(([, growth]) => growth > GROWN), n = points.length, { chain } = world.state;
     if (n < 5 || chain.spring !== "linear") return null;

@@ -74,7 +74,7 @@ relax --output grid.toml | Not a directory: 'grid.toml'
 relax --output grid.toml/results | Not a directory: 'grid.toml/results'
 reproduce fig20 | no figure 'fig20'
 theory fluid | name must be one of ('equilibrium',
-theory --restitution 1.3 --damping 4 --output results | the energy grows without bound
+theory --restitution 1.3 --damping 4 --output results | no steady state
 sweep none.toml --output results | No such file or directory: 'none.toml'
 sweep wrong.toml --output results | size must be
 sweep grid.toml --output results --processes 0 | processes must be
@@ -154,7 +154,7 @@ TAKES_IT = {
     "compare": "crazybilliards.comparison.side_by_side.grid.compare",
     "relax": "crazybilliards.comparison.side_by_side.relaxation.compare_relaxation",
     "simulate": "crazybilliards.particles.simulation.simulate",
-    "theory": "crazybilliards.kinetic.phase_space",
+    "theory": "crazybilliards.kinetic.steady_state",
 }
 
 
@@ -170,8 +170,8 @@ def test_every_parameter_of_a_chain_is_an_option_that_reaches_the_chain(
         chains.append(chain)
         raise ValueError("far enough")
 
-    theory = replace(THEORIES["phase_space"], solve=stop, check=lambda *_, **__: None)
-    monkeypatch.setitem(THEORIES, "phase_space", theory)
+    theory = replace(THEORIES["steady_state"], solve=stop, check=lambda *_, **__: None)
+    monkeypatch.setitem(THEORIES, "steady_state", theory)
     _, room, *_, name = TAKES_IT[command].split(".")
     # The name is replaced in its room first, because a room fetches it from the module at the first
     # use. In the other order monkeypatch would save, and later restore, the replacement.

@@ -1,7 +1,6 @@
 """The command ``theory``: every theory by its name."""
 
 import functools
-import json
 from dataclasses import replace
 
 import pytest
@@ -35,26 +34,22 @@ def test_every_theory_by_its_name(name, run, solved, tmp_path):
     [(chain, result)] = solved
     assert chain == Chain(size=10, amplitude=5)
     assert load(tmp_path / "theory.nc").identical(result)
-    pictures = {"density.png", "profile.png"}
-    pictures |= {"phase_space.png"} if "phase_space" in name else set()
-    assert {path.name for path in tmp_path.iterdir()} == pictures | {"theory.nc"}
+    written = {"density.png", "profile.png", "theory.nc"}
+    assert {path.name for path in tmp_path.iterdir()} == written
     assert THEORIES[name].title.capitalize() in " ".join(done.stdout.split())
     assert f"{result.velocity_width[0]:.4g}" in done.stdout
     assert name in run("theory", "--help").stdout
 
 
-def test_without_a_name_it_is_the_best_theory_and_says_so(run, solved):
-    done = run("theory", "--size", 12, "--restitution", 0.5)
+@pytest.mark.parametrize(("e", "title"), [(0.5, "Gas"), (1, "Exact equilibrium")])
+def test_without_a_name_it_is_the_theory_of_the_chain_and_says_so(run, solved, e, title):
+    done = run("theory", "--size", 12, "--restitution", e)
     assert done.returncode == 0
-    assert done.stdout.startswith("Kinetic equation with pair correlations, L = 12, e = 0.5")
+    assert done.stdout.startswith(f"{title}, L = 12, e = {e}")
     [(_, result)] = solved
     assert f"{result.velocity_width[0]:.4g}" in done.stdout
 
 
-def test_the_list_tells_who_takes_the_chain(run, solved):
-    done = run("theory", "--list", "--restitution", 0.5)
-    text = " ".join(done.stdout.split())
-    assert "correlated_phase_space" in text
-    assert solved == []
-    facts = json.loads(run("theory", "--list", "--restitution", 0.5, "--json").stdout)
-    assert [row["theory"] for row in facts["theories"]] == list(THEORIES)
+def test_in_a_box_the_error_of_the_force_on_walls_is_stated(run):
+    assert "force on" in run("theory", "--size", 5, "--box", 20, "--stiffness", 0).stdout
+    assert "force on" not in run("theory", "--size", 5).stdout
