@@ -1,4 +1,4 @@
-"""The theory: exact equilibrium, force balance, hydrodynamics, kinetic equation.
+"""The theory: exact equilibrium, force balance, the gas at rest and in time.
 
 The public names are listed in ``__init__.pyi``. Each loads its module when it is first used.
 """

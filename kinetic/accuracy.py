@@ -1,44 +1,40 @@
-"""What the theories state of themselves: their errors, and about how long they compute.
+"""What the theories state of themselves: their errors against simulations or exact solutions.
 
-The errors are those of the theories, not of their numerical solutions. They are read from the
-tables in ``kinetic/measured``, which
+They are errors of the theories, not of their numerical solutions, and are read from the tables in
+``kinetic/measured``, which
 
     python -m studies.stationary_errors FOLDER
     python -m studies.force_balance
     python -m studies.relaxation_error FOLDER
 
-have written. A stated error is the measured one plus two of its standard errors: the largest of the
-measured chains on all sides of a chain, or in time of all measured chains in a range of L (1 - e).
-It is NaN beyond them.
+have written. A stated error is a measured one plus two of its standard errors: for ``steady_state``
+the largest of the chains of its kind that are nearby, for ``force_balance`` that of the measured
+chains on all sides, and in time that of all chains in a range of L (1 - e). It is NaN beyond them.
 """
 
 from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from crazybilliards.model import Chain
 from crazybilliards.model.warn import warn_user
 
-# Coordinates in the tables, in order. The density of shorter rods is less wrong, so that of the
-# largest s/R counts beyond it, too.
-_PLACE = ("g L/s", "L", "e", "Gamma")
-_AXES = {
-    "force_balance": ("g/s", "L"),
-    "phase_space": _PLACE,
-    "correlated_phase_space": _PLACE,
-    "relax_phase_space": ("L", "e", "Gamma", "y times"),
-}
-_LENGTH = "s/R"
-# Of the density of the force balance at e = 1, without a gap or without springs: the largest of 800
-# boxes. With both it may be twice as large.
+# Of ``steady_state``: a chain is near another one of its kind if all its numbers are within these
+# factors, 1 - e as well, and e within this difference. x is that of ``kind_and_place``.
+_FACTORS = {"L": 2.5, "Gamma": 2.5}
+_FACTORS_OF_X = {"gap": 2.5, "box": 2.5, "driven": 1.45, "inelastic walls": 1.5}
+_FACTOR_OF_LOSS, _DIFFERENCE = 2.6, 0.26
+_SAME = 5e-3  # relative
+_SHORTEST = 21.0  # s/R in the table of the force balance
+_OF_THE_GRID = 1e-3  # at e = 1, where the gas is exact but for its cells
+# Of the force balance the largest of 800 boxes at e = 1, without a gap or without springs. With
+# both it may be twice as large.
 _IN_A_BOX = 0.18
-_CONTINUOUS, _SAME = ("Gamma", "g L/s", "g/s", _LENGTH), 5e-3  # relative
-_ANY = 0.49  # Gamma of a measured chain
 # Of the chains and starts in time: L, Gamma, what y was multiplied by, and the shift in s.
 _IN_TIME = {"L": (20, 100), "Gamma": (0.3, 1.5), "stretch": (0.8, 1.3), "shift": (-2, 2)}
 
@@ -49,11 +45,12 @@ class Accuracy(NamedTuple):
     velocity_width: float = math.nan  # relative, of the particles 3 to L - 2
     border: float = math.nan  # the same of the first and the last
     displacement_width: float = math.nan  # relative, of any particle
-    mean_displacement: float = math.nan  # in thermal lengths, of any particle
+    mean_displacement: float = math.nan  # of any particle, in s, or in the room of a rod
     density: float = math.nan  # of the smoothed density, relative to close packing
+    wall_force: float = math.nan  # relative
 
     def named(self) -> dict[str, float]:
-        """Return the errors by the names that attributes of results and columns of tables have."""
+        """Return the errors by the names that attributes of results have."""
         return {f"{quantity}_model_error": error for quantity, error in self._asdict().items()}
 
 
@@ -65,32 +62,107 @@ def warn_if_unmeasured(theory: str, error: float) -> None:
     """Tell the caller of a theory, once, that its error is not known for this chain."""
     if math.isnan(error):
         warn_user(
-            f"the error of {theory} was not measured for chains like this one (it is "
-            "NaN); crazybilliards.theories(chain) lists what is known",
+            f"the error of {theory} was not measured for chains like this one (it is NaN)",
             UnmeasuredWarning,
         )
 
 
 def expected(theory: str, chain: Chain) -> Accuracy:
-    """Return the errors of a stationary theory: the largest of the measured chains around this one.
+    """Return the errors of a stationary theory, named by its function.
 
-    At e = 1 these theories have the exact velocities. ``force_balance`` was measured there alone.
     A theory that was never measured has no errors to state.
     """
-    if theory == "equilibrium":
-        return Accuracy(0.0, 0.0, 0.0, 0.0, 0.0)
-    if theory not in _AXES or (theory == "force_balance" and chain.restitution != 1):
+    of = {
+        "equilibrium": _of_equilibrium,
+        "force_balance": _of_force_balance,
+        "steady_state": _of_steady_state,
+    }
+    return of[theory](chain) if theory in of else Accuracy()
+
+
+def _of_equilibrium(chain: Chain) -> Accuracy:
+    return Accuracy(0.0, 0.0, 0.0, 0.0, 0.0, 0.0 if chain.box else math.nan)
+
+
+def _of_force_balance(chain: Chain) -> Accuracy:
+    """Return the errors of ``force_balance`` at e = 1, where they were measured."""
+    if chain.restitution != 1:
         return Accuracy()
     if chain.box:
         density = _IN_A_BOX if chain.exchangeable else math.nan
         return Accuracy(velocity_width=0.0, border=0.0, density=density)
-    axes, place = _AXES[theory], _place(chain)
-    errors = {
-        quantity: _around(theory, quantity, axes + (_LENGTH,) * (quantity == "density"), place)
-        for quantity in Accuracy._fields
+    place = _gap_and_size(chain)
+    moved = _around("mean_displacement", place)
+    # The density of shorter rods is less wrong, so that of the shortest counts beyond it, too.
+    length = min(chain.thermal_length / chain.radius, _SHORTEST)
+    density = _around("density", place | {"s/R": length})
+    return Accuracy(velocity_width=0.0, border=0.0, mean_displacement=moved, density=density)
+
+
+def _of_steady_state(chain: Chain) -> Accuracy:
+    """Return the errors of ``steady_state``: the largest of the measured chains nearby."""
+    if (chain.restitution == 1 or chain.size == 1) and chain.wall_restitution == 1:
+        return Accuracy(0.0, 0.0, 0.0, 0.0, _OF_THE_GRID, _OF_THE_GRID if chain.box else math.nan)
+    kind, place = kind_and_place(chain)
+    measured = [row for row in _rows("steady_state") if row["kind"] == kind]
+    for axis, value in place.items():
+        numbers = [float(row[axis]) for row in measured]
+        if axis == "e" and value <= 1:  # errors fall towards e = 1
+            place[axis] = value = min(value, max(numbers, default=value))
+        if not min(numbers, default=math.inf) * (1 - _SAME) <= value <= max(numbers) * (1 + _SAME):
+            return Accuracy()
+    near = [row for row in measured if _are_near(kind, row, place)]
+    # Every chain was measured with one s/R, on which its density depends: that of all with such a
+    # size and restitution counts.
+    alike = place | dict.fromkeys(("Gamma", "x"), math.nan)
+    densities = [row for row in measured if _are_near(kind, row, alike)] if near else []
+    found = {
+        name: max(
+            (float(row[name]) for row in (densities if name == "density" else near) if row[name]),
+            default=math.nan,
+        )
+        for name in Accuracy._fields
     }
-    exact = {"velocity_width": 0.0, "border": 0.0} if chain.restitution == 1 else {}
-    return Accuracy(**errors | exact)
+    return Accuracy(**found)
+
+
+def kind_and_place(chain: Chain) -> tuple[str, dict[str, float]]:
+    """Return which table a chain belongs to, and where: L, e, Gamma and a number x of its kind.
+
+    x is the gap over s, the room of a box over s, the share of the critical size, or the
+    restitution of walls. Lengths of a gas without springs are in the room of a rod.
+    """
+    s = chain.thermal_length if chain.stiffness else 2 * chain.walls[1] / chain.size
+    damping = chain.damping * s / (chain.mass * chain.free_velocity_width)
+    kind, x = "linear", 1.0
+    if chain.wall_restitution < 1:
+        kind, x = "inelastic walls" if chain.stiffness == 0 else "", chain.wall_restitution
+    elif chain.stiffness == 0:
+        kind = "gas in a box"
+    elif chain.restitution > 1:
+        bare = not chain.gap and not chain.box and chain.spring == "linear"
+        kind = "driven" if bare else ""
+        x = chain.size * (chain.restitution - 1) / (math.pi * damping)
+    elif chain.box:
+        kind, x = "box" if chain.spring == "linear" else "", 2 * chain.walls[1] / s
+    elif chain.spring == "quadratic":
+        kind = "quadratic" if not chain.gap else ""
+    elif chain.gap:
+        kind, x = "gap", chain.gap / s
+    return kind, {"L": chain.size, "e": chain.restitution, "Gamma": damping, "x": x}
+
+
+def _are_near(kind: str, row: Mapping[str, str], place: Mapping[str, float]) -> bool:
+    factors = _FACTORS | {"x": _FACTORS_OF_X.get(kind, 1.1)}
+    within = all(  # NaN: any
+        not abs(math.log(float(row[axis]) / place[axis])) > math.log(factor)
+        for axis, factor in factors.items()
+    )
+    e, other = float(row["e"]), place["e"]
+    if e >= 1 or other >= 1:
+        return within and (kind == "driven" or abs(e - other) < _SAME)
+    alike = abs(math.log((1 - e) / (1 - other))) <= math.log(_FACTOR_OF_LOSS)
+    return within and alike and abs(e - other) <= _DIFFERENCE
 
 
 class Release(NamedTuple):
@@ -125,105 +197,40 @@ def expected_in_time(chain: Chain, release: Release | None) -> float:
     )
     if not inside or abs(release.heat - 1) > 2 * _SAME:
         return math.nan
-    measured = _tables()["hydrodynamics", "kinetic_energy"].get(chain.potential_exponent, {})
-    concentration = round(chain.size * (1 - chain.restitution), 9)
-    return _in_ranges(measured, [chain.lattice_gap / s, concentration])
-
-
-def _in_ranges(measured: Any, place: list[float]) -> float:
-    """Return the error of the first ranges, from least to most, that hold all values; or NaN."""
-    if not place:
-        return float(measured)
-    value, *rest = place
-    for least, ends in measured.items():
-        for most, inner in ends.items():
-            if least <= value <= most and not math.isnan(found := _in_ranges(inner, rest)):
-                return found
+    numbers = {
+        "g/s": chain.lattice_gap / s,
+        "L(1-e)": round(chain.size * (1 - chain.restitution), 9),
+    }
+    for row in _rows("relaxation"):
+        inside = all(
+            float(row[f"least {name}"]) <= value <= float(row[f"most {name}"])
+            for name, value in numbers.items()
+        )
+        if inside and int(row["n"]) == chain.potential_exponent:
+            return float(row["error"]) + 2 * float(row["standard error"])
     return math.nan
 
 
-def expected_relax_phase_space(chain: Chain, compression: float) -> float:
-    """Return the relative error of the kinetic energy in time to expect; NaN if none was measured.
-
-    ``compression``: what y of the equilibrium at e = 1 was multiplied by at the start; NaN for
-    another start. Without a gap and at e = 1 the equation is exact.
-    """
-    if chain.gap > 0:
-        return math.nan
-    if chain.restitution == 1:
-        return 0.0
-    place, theory = _place(chain) | {"y times": compression}, "relax_phase_space"
-    return _around(theory, "kinetic_energy", _AXES[theory], place)
+def _gap_and_size(chain: Chain) -> dict[str, float]:
+    """Return where a chain lies in the table of the force balance; NaN for quadratic springs."""
+    linear = chain.spring == "linear" and min(chain.stiffness, chain.damping, chain.amplitude) > 0
+    gap = chain.lattice_gap / chain.thermal_length if linear else math.nan
+    return {"g/s": gap, "L": chain.size}
 
 
-def expected_seconds(theory: str, chain: Chain) -> float:
-    """Return the computing time of a theory, by the name of its function [s].
-
-    It is that on one core, within a factor of three.
-    """
-    # From e = 1 to the chain in steps, each with 2.5 times the drag.
-    steps = 1 + math.log1p(abs(1 - chain.restitution) * chain.size) / math.log(2.5)
-    return {
-        "equilibrium": 1e-3 * chain.size,
-        "force_balance": 0.03,
-        "phase_space": 0.4 * steps,
-        "correlated_phase_space": 1.0 * steps,
-    }[theory]
-
-
-def _place(chain: Chain) -> dict[str, float]:
-    """Return where a chain lies in the tables; NaN for quadratic springs, which are in none."""
-    if chain.spring != "linear" or min(chain.stiffness, chain.damping, chain.amplitude) == 0:
-        return dict.fromkeys((*_PLACE, "g/s", _LENGTH), math.nan)
-    s = chain.thermal_length
-    return {
-        "L": chain.size,
-        "e": chain.restitution,
-        # At e = 1 no distribution in space depends on the damping.
-        "Gamma": _ANY if chain.restitution == 1 else chain.relative_damping,
-        "g L/s": chain.lattice_gap * chain.size / s,
-        "g/s": chain.lattice_gap / s,
-        _LENGTH: s / chain.radius,
-    }
-
-
-def _around(theory: str, quantity: str, axes: tuple[str, ...], place: Mapping[str, float]) -> float:
-    """Return the largest error of the measured chains on all sides of a place; NaN beyond them."""
-    return _largest(_tables().get((theory, quantity), {}), [(axis, place[axis]) for axis in axes])
-
-
-def _largest(measured: Any, place: list[tuple[str, float]]) -> float:
-    """Return the largest error on both sides of the first coordinate, and so on for the others."""
-    if not place:
-        return float(measured)
-    (axis, value), *rest = place
-    if axis in _CONTINUOUS:  # gamma = 1 is measured as Gamma = 0.49
-        value = next((each for each in measured if abs(each - value) <= _SAME * each), value)
-    below = [each for each in measured if each <= value]
-    above = [each for each in measured if each >= value]
-    if not below or not (above or axis == _LENGTH):
-        return math.nan
-    sides = {max(below), min(above, default=max(below))}
-    errors = [_largest(measured[side], rest) for side in sides]
-    return math.nan if any(map(math.isnan, errors)) else max(errors)
+def _around(quantity: str, place: Mapping[str, float]) -> float:
+    """Return the largest error of the measured chains on both sides in every number of a place."""
+    rows = [row for row in _rows("force_balance") if row["quantity"] == quantity]
+    for axis, value in place.items():
+        below = [float(row[axis]) for row in rows if float(row[axis]) <= value * (1 + _SAME)]
+        above = [float(row[axis]) for row in rows if float(row[axis]) >= value * (1 - _SAME)]
+        if not (below and above):
+            return math.nan
+        rows = [row for row in rows if float(row[axis]) in (max(below), min(above))]
+    return max(float(row["error"]) for row in rows)
 
 
 @cache
-def _tables() -> dict[tuple[str, str], Any]:
-    """Return the errors to state, by theory and quantity, then by the coordinates of the chain."""
-    tables: dict[tuple[str, str], Any] = {}
-    for row in _rows():
-        theory, quantity = row.pop("theory"), row.pop("quantity")
-        error = float(row.pop("error")) + 2 * float(row.pop("standard error"))
-        *outer, last = (float(value) for value in row.values() if value)
-        branch = tables.setdefault((theory, quantity), {})
-        for value in outer:
-            branch = branch.setdefault(value, {})
-        branch[last] = error
-    return tables
-
-
-def _rows() -> Iterator[dict[str, str]]:
-    for table in (files("crazybilliards.kinetic") / "measured").iterdir():
-        if table.name.endswith(".csv"):
-            yield from csv.DictReader(table.read_text(encoding="utf-8").splitlines())
+def _rows(table: str) -> list[dict[str, str]]:
+    file = files("crazybilliards.kinetic") / "measured" / f"{table}.csv"
+    return list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))

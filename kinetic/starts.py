@@ -31,7 +31,7 @@ _POINTS = 10_001  # from wall to wall
 _CROWDED = 1.01  # so many rods in the length of one overlap, but for errors of the grid
 _CRYSTAL = (
     "these are the spikes of a crystal, which no fluid has; take the smooth density of "
-    "force_balance or phase_space"
+    "force_balance"
 )
 _NO_SIGN_CHANGE = -1  # status of a root that scipy did not look for; those below are failures
 

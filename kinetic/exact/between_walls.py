@@ -41,6 +41,13 @@ _GREGORY = np.array([3 / 8, 7 / 6, 23 / 24])  # weights of the nodes at a wall
 _STEEPEST = 5.0  # of f'/f in a cell; where it is steeper Z_i is negligible
 
 
+def weights(nodes: int) -> Array:
+    """Return the weights of evenly spaced nodes in a sum that is an integral, in spacings."""
+    found = np.ones(nodes)
+    found[:3], found[-3:] = _GREGORY, _GREGORY[::-1]
+    return found
+
+
 @dataclass(frozen=True)
 class BoxRecursion:
     """log Z_i of all rods on the grid between the walls."""
@@ -70,9 +77,7 @@ class BoxRecursion:
     @property
     def weights(self) -> Array:
         """The weights of the nodes in a sum over the grid."""
-        weights = np.ones(self.y.size)
-        weights[:3], weights[-3:] = _GREGORY, _GREGORY[::-1]
-        return weights
+        return weights(self.y.size)
 
     def log_density(self, i: int) -> tuple[Array, Array]:
         """Return displacements of rod i and the logarithm of their density, not normalised."""

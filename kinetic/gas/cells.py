@@ -14,7 +14,7 @@ from scipy.special import ndtr
 from crazybilliards.model.arrays import Array
 
 MOST = 200
-_SCORES, _POINTS = 5.5, 160
+_SCORES, _POINTS = 5.5, 320
 
 
 class Cells(NamedTuple):

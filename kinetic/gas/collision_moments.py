@@ -1,7 +1,6 @@
 r"""What one collision does to the moments of two rods, averaged over Gaussian velocities.
 
-In the picture of :mod:`..kinetic_equation.weak_form` two points with velocities v and u pass each
-other and keep
+In the picture of points two of them, with velocities v and u, pass each other and keep
 
     v* = v - lambda (v - u),      u* = u + lambda (v - u),      lambda = (1 - e)/2.
 

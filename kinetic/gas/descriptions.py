@@ -192,9 +192,9 @@ class Descriptions:
         state = MeanState(*(np.mean(fields, axis=0) for fields in zip(*states, strict=True)))
         if medium.exponent == 3:
             x = state.place - medium.lattice * (self.cells.centres - medium.size / 2)
-            labels, gap = self.cells.all_labels(medium.walled), np.full(1, np.inf)
-            if labels.size:  # otherwise a single rod, without a neighbour
-                gap = np.interp(self.cells.centres, labels, state.gap)
+            labels = self.cells.all_labels(medium.walled)
+            # A rod alone has no contact.
+            gap = np.interp(self.cells.centres, labels, state.gap) if labels.size else np.inf
             T = state.temperature
             self.slope = mean_slope(medium.stiffness, x, T, gap, spread)
         return state

@@ -18,7 +18,7 @@ from crazybilliards.model.arrays import Array
 _TURNS = 20
 
 
-def mean_slope(stiffness: float, x: Array, T: Array, gap: Array, spread: Array) -> Array:
+def mean_slope(stiffness: float, x: Array, T: Array, gap: Array | float, spread: Array) -> Array:
     """Return k of quadratic springs at the cells. ``spread``: h_uu."""
     k = np.full(x.size, 2 * stiffness)
     for _ in range(_TURNS):

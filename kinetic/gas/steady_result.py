@@ -8,13 +8,14 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
-from crazybilliards.kinetic.accuracy import expected
+from crazybilliards.kinetic.accuracy import Accuracy, warn_if_unmeasured
 from crazybilliards.kinetic.gas.agreement import Fluctuations, Steady
 from crazybilliards.kinetic.gas.cells import at_distance, of_rods
 from crazybilliards.kinetic.gas.fluctuations import dissipation
 from crazybilliards.kinetic.rods.places import (
     MOST_RODS,
     MOST_RODS_WITH_GAP,
+    RodPlaces,
     are_resolved,
     at_temperature,
     elastic_rods,
@@ -39,8 +40,8 @@ class Rods(NamedTuple):
     velocity_variance: Array
 
 
-def in_vocabulary(chain: Chain, found: Steady) -> xr.Dataset:
-    """Return the result of ``steady_state``."""
+def in_vocabulary(chain: Chain, found: Steady, errors: Accuracy) -> xr.Dataset:
+    """Return the result of ``steady_state``, with the errors of the theory."""
     length, W = found.problem.medium.length, chain.free_velocity_width
     rods, of = rods_of(chain, found), found.fluctuations
     variables: Variables = {
@@ -68,9 +69,9 @@ def in_vocabulary(chain: Chain, found: Steady) -> xr.Dataset:
         method={"theory": theory},
         residual=found.residual,
     )
-    resolved = are_resolved(chain)
-    dataset.attrs |= {"density_of": OF_RODS if resolved else OF_FLUID}
-    dataset.attrs |= {"iterations": found.iterations, **expected("steady_state", chain).named()}
+    warn_if_unmeasured("the steady state of the gas", errors.velocity_width)
+    density_of = OF_RODS if are_resolved(chain) else OF_FLUID
+    dataset.attrs |= {"iterations": found.iterations, "density_of": density_of, **errors.named()}
     return dataset
 
 
@@ -120,10 +121,7 @@ def _over_positions(chain: Chain, found: Steady, rods: Rods) -> tuple[dict[str, 
     x = position_grid(chain, float(np.abs(places).max() - chain.anchors[-1]))
     shapes = None
     if are_resolved(chain):
-        temperature = chain.temperature * float(rods.velocity_variance.mean())
-        shapes = elastic_rods(at_temperature(chain, temperature)).moved(
-            medium.length * rods.place, medium.length * rods.width
-        )
+        shapes = _shapes(chain, medium.length, rods)
         farthest = float(np.abs(shapes.places).max() - chain.reduced_anchors[-1])
         x = max(x, position_grid(chain, farthest), key=len)
     number = np.interp(x, places, label + chain.size / 2)
@@ -141,6 +139,18 @@ def _over_positions(chain: Chain, found: Steady, rods: Rods) -> tuple[dict[str, 
         "heat_flux": ("x", _heat_flux(chain, found, number)),
     }
     return {"x": x}, variables
+
+
+def _shapes(chain: Chain, length: float, rods: Rods) -> RodPlaces:
+    """Return the elastic chain's rods, moved and stretched to these moments, but not into walls."""
+    temperature = chain.temperature * float(rods.velocity_variance.mean())
+    elastic = elastic_rods(at_temperature(chain, temperature))
+    mean, width = length * rods.place, length * rods.width
+    if chain.box:
+        own, ends = elastic.mean(), elastic.places[:, [0, -1]].T
+        room = np.abs(np.array(chain.walls)[:, None] - mean) / np.abs(ends - own)
+        width = np.minimum(width, room.min(axis=0) * elastic.width())
+    return elastic.moved(mean, width)
 
 
 def _heat_flux(chain: Chain, found: Steady, label: Array) -> Array:

@@ -25,6 +25,7 @@ from __future__ import annotations
 import xarray as xr
 from threadpoolctl import threadpool_limits
 
+from crazybilliards.kinetic.accuracy import Accuracy, expected
 from crazybilliards.kinetic.gas.agreement import in_agreement, mean_field
 from crazybilliards.kinetic.gas.cells import make_cells
 from crazybilliards.kinetic.gas.fixed_point import NoFixedPointError
@@ -98,9 +99,12 @@ def steady_state(chain: Chain, *, correlations: bool = True) -> xr.Dataset:
     correlated = correlations and chain.restitution <= 1 and chain.size >= _FEWEST_CORRELATED
     solve, cells = in_agreement if correlated else mean_field, make_cells(chain.size, whole=True)
     try:
-        return in_vocabulary(chain, solve(chain, cells))
+        found = solve(chain, cells)
     except (NoFixedPointError, NoSteadyStateError) as error:
         raise ValueError(f"the gas has no steady state that could be found: {error}") from error
+    # Below e = 1 the mean field was not measured.
+    measured = correlations or chain.restitution >= 1
+    return in_vocabulary(chain, found, expected("steady_state", chain) if measured else Accuracy())
 
 
 def check_steady_state(chain: Chain, *, correlations: bool = True) -> None:

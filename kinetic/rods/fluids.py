@@ -44,7 +44,7 @@ def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
     ----------
     theory
         A result of ``force_balance`` or ``hydrodynamics``, or a start of it, at one time or all.
-        One whose density is that of its rods already, as that of ``equilibrium``, ``phase_space``
+        One whose density is that of its rods already, as that of ``equilibrium``, ``steady_state``
         and ``rod_by_rod``, is returned as it is.
 
     Returns

@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.special import betainc, betaincinv, betaln, log_ndtr, ndtr, ndtri
 
+from crazybilliards.kinetic.exact import between_walls
 from crazybilliards.kinetic.exact.gibbs_measure import recursion_of
 from crazybilliards.kinetic.statics.label_closure import stationary
 from crazybilliards.model import Chain
@@ -177,7 +178,9 @@ def elastic_rods(chain: Chain) -> RodPlaces:
         rods.places[i] = chain.reduced_anchors[i] + nodes
         rods.density[i], rods.below[i] = curve(nodes), curve.antiderivative()(nodes)
     rods.below[:] /= rods.below[:, -1:]
-    rods.share[:] = rods.density / rods.density.sum(axis=1, keepdims=True)
+    # A table may end at a wall, where the density is not 0.
+    weighted = rods.density * between_walls.weights(_NODES)
+    rods.share[:] = weighted / weighted.sum(axis=1, keepdims=True)
     return rods
 
 

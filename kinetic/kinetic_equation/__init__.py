@@ -1,1 +1,0 @@
-"""The kinetic equation for f(y, v) at restitutions other than 1."""
