@@ -16,16 +16,14 @@ import xarray as xr
 from crazybilliards.kinetic import (
     breathing_cloud,
     compressed,
-    correlated_phase_space,
     critical_size,
     displaced,
     equilibrium,
     equilibrium_states,
     force_balance,
     hydrodynamics,
-    phase_space,
-    relax_phase_space,
     rod_by_rod,
+    steady_state,
 )
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -50,7 +48,6 @@ class Given:
     stretch: float = 1.5
     times: Mapping[str, float]  # duration and every, of what is solved in time
     fluid: Mapping[str, Any] = field(default_factory=dict)
-    cells: int = 8  # of the kinetic equations
     run: Mapping[str, float] = field(default_factory=dict)  # of simulations
     warmup: float = 1.0
 
@@ -123,15 +120,9 @@ SOLVERS = {
         lambda chain, given: breathing_cloud(chain, **given.times, stretch=0.5),
         {"gap": 0.0, **ELASTIC, **LINEAR},
     ),
-    "phase_space": Solver(lambda chain, given: phase_space(chain, cells=given.cells)),
-    "correlated_phase_space": Solver(
-        lambda chain, given: correlated_phase_space(chain, cells=given.cells),
-        {"size": 10, "gap": 0.0, **LINEAR},
-    ),
-    "relax_phase_space": Solver(
-        lambda chain, given: relax_phase_space(
-            chain, given.start, **given.times, cells=given.cells, progress=False
-        )
+    "steady_state": Solver(lambda chain, _: steady_state(chain), {"restitution": 0.8}),
+    "steady_state, mean field": Solver(
+        lambda chain, _: steady_state(chain, correlations=False), {"restitution": 0.8}
     ),
     "rod_by_rod": Solver(lambda chain, _: rod_by_rod(force_balance(chain)), ELASTIC),
     "rod_by_rod, in time": Solver(

@@ -33,6 +33,7 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import eigh
+from threadpoolctl import threadpool_limits
 
 from crazybilliards.kinetic.gas.cells import cells_of_points
 from crazybilliards.kinetic.gas.collision_moments import moments_of_collisions
@@ -61,6 +62,7 @@ class CriticalValue(NamedTuple):
     error: float
 
 
+@threadpool_limits.wrap(limits=1, user_api="blas")  # small matrices: more only wait
 def critical_size(chain: Chain) -> CriticalValue:
     """Return the number of rods from which on a chain with e > 1 has no steady state.
 
