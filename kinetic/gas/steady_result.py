@@ -201,11 +201,12 @@ def _mode_variances(chain: Chain, found: Steady, of: Fluctuations, rods: Rods) -
     """Return <|v_q|^2>, v_q = sum_i sqrt((2 or, for q = 0, 1)/L) cos(pi q (i - 1/2)/L) v_i."""
     cells, size = found.problem.cells, chain.size
     q = np.arange(cells.rods.size)[:, None]
-    waves = np.sqrt(np.where(q == 0, 1, 2) / size) * np.cos(np.pi * q * cells.centres / size)
-    own = np.interp(cells.centres, np.arange(size) + 0.5, rods.velocity_variance)
-    shared = np.interp(cells.centres, cells.contacts, of.background.shared[found.problem.inner])
-    weighted = waves * cells.rods
-    return np.asarray(
-        (waves**2) @ (cells.rods * (own - shared))
-        + np.einsum("qi,ij,qj->q", weighted, of.pairs.velocity, weighted)
-    )
+
+    def waves(labels: Array) -> Array:
+        return np.asarray(np.sqrt(np.where(q == 0, 1, 2) / size) * np.cos(np.pi * q * labels / size))
+
+    middles = np.arange(0.5, size)
+    shared = np.interp(middles, cells.contacts, of.background.shared[found.problem.inner])
+    local = waves(middles) ** 2 @ (rods.velocity_variance - shared)
+    weighted = waves(cells.centres) * cells.rods
+    return np.asarray(local + np.einsum("qi,ij,qj->q", weighted, of.pairs.velocity, weighted))
