@@ -429,13 +429,14 @@ start = cb.compressed(cooling, 1)  # the equilibrium at e = 1, as it is
 flow = cb.hydrodynamics(cooling, start, velocity_variance="evolving", **how)
 ax = cb.overlay({"simulation": run, "the gas": flow}, "kinetic_energy", ax=panels(width=6))
 _ = ax.legend(frameon=False)
-E, t = run.kinetic_energy.values, run.time.values
-print(f"half of the energy is gone after {t[E < E[0] / 2][0]:.2f} t_0")
-print(f"the gas: at most {100 * abs(flow.kinetic_energy.values / E - 1).max():.0f} % off")
+energy = run.kinetic_energy.values
+gone = run.time.values[energy < energy[0] / 2][0]
+print(f"half of the energy is gone after {gone:.2f} t_0")
+print(f"the gas: at most {100 * abs(flow.kinetic_energy.values / energy - 1).max():.0f} % off")
 
 # %% tags=["remove-cell"]
-assert abs(flow.kinetic_energy.values / E - 1).max() < 0.12
-assert 0.3 < t[E < E[0] / 2][0] < 1.5
+assert abs(flow.kinetic_energy.values / energy - 1).max() < 0.12
+assert 0.3 < gone < 1.5
 
 # %% [markdown]
 # <details><summary>Explain</summary>
