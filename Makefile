@@ -8,8 +8,8 @@ OLDEST := .venv-lowest
 OUTPUT ?= results
 QUALITY ?= quick
 WHICH ?= all
-# Lessons have a number; notebooks for readers begin with paper_ or seminar_.
-ALL_LESSONS := [0-9ps]
+# Lessons have a number; notebooks for readers begin with paper_.
+ALL_LESSONS := [0-9p]
 LESSON ?= $(ALL_LESSONS)
 LESSONS := build/lessons
 CHECK_PYTHON := $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import hashlib
 import math
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -81,18 +80,11 @@ def carry_out(
         save_picture(folder / f"{Path(sys.argv[0]).stem}.png", draw, results)
 
 
-def save_picture(
-    path: Path, draw: Callable[[Any], Figure], of: Any, tables: Sequence[Path] = ()
-) -> None:
-    """Draw ``of`` in the style of the documentation.
-
-    A picture of ``tables`` names their digest, so that a test finds a picture of older ones.
-    """
+def save_picture(path: Path, draw: Callable[[Any], Figure], of: Any) -> None:
+    """Draw ``of`` in the style of the documentation."""
     mpl.use("Agg")
-    contents = "".join(table.read_text(encoding="utf-8") for table in tables)
-    digest = hashlib.sha256(contents.encode()).hexdigest()
     with house_style():
-        draw(of).savefig(path, metadata={"Source": digest} if tables else None)
+        draw(of).savefig(path)
 
 
 def print_table(rows: Table) -> None:

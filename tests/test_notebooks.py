@@ -45,7 +45,7 @@ def tags(cell):
 
 
 def is_for_a_class(name):
-    """Tell lessons from notebooks for readers of the paper and for a seminar: by their number."""
+    """Tell lessons from notebooks for readers of the paper: by their number."""
     return name[0].isdigit()
 
 
