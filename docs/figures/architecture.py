@@ -148,7 +148,7 @@ def _draw_units(ax: Axes, room: str) -> None:
         folder = (ROOT / name.replace(".", "/")).is_dir()
         box = (x - half_wide[name], y - half_high, 2 * half_wide[name], 2 * half_high)
         _box(ax, *box, "white", edge="0.35" if folder else "0.75", pad=0.02)
-        text = name.split(".")[1].replace("kinetic_equation", "kinetic eq.").replace("_", " ")
+        text = name.split(".")[1].replace("_", " ")
         ax.text(
             x,
             y,

@@ -1,7 +1,7 @@
 r"""Covariance h' of the displacements of neighbourhoods, which W_x has in place of h.
 
 After one rod and pairs have agreed, the equation of :mod:`.fluctuations` is solved once more,
-with three changes, which docs/when_is_a_gas.md derives. The velocities keep h.
+with three changes, which docs/gas.md derives. The velocities keep h.
 
 **Background.** W_x has the local part of f. So T_f, P/T_f and h_uu stand for Theta, n and h_c.
 
