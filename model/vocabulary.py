@@ -49,7 +49,6 @@ VOCABULARY = {
     "flow_velocity": ("flow velocity V", "R/t_0"),
     "velocity_variance": ("velocity variance W^2", "R^2/t_0^2"),
     "heat_flux": ("heat flux (m/2) int (v - V)^3 f dv", "M R^2/t_0^3"),
-    "phase_space_density": ("phase-space density f(y, v)", "t_0/R^2"),
     "neighbour_covariance": ("covariance of neighbours' velocities <v_i v_i+1>", "R^2/t_0^2"),
     "relative_temperature": ("relative temperature <(v_i - v_i+1)^2>/2", "R^2/t_0^2"),
     "contact_force": ("mean force between neighbours", "M R/t_0^2"),
@@ -86,7 +85,6 @@ VOCABULARY = {
     "impact_speed": ("speed w at which rods meet, in the middle of a bin", "R/t_0"),
     "time": ("time t", "t_0"),
     "x": ("position x", "R"),
-    "y": ("reduced position y", "R"),
     "particle": ("particle i", "1"),
     "contact": ("contact of particle i with i + 1", "1"),
     "wall": ("wall, 1 on the left and 2 on the right", "1"),
@@ -107,7 +105,6 @@ ATTRIBUTES = {
     "residual": ("how far the equations are from satisfied", "1"),
     "time_step_error": ("relative error of W_v due to the time step", "1"),
     "relaxation_time": ("time in which the chain forgets its start", "t_0"),
-    "mesh_error": ("largest relative error of W_v due to the mesh", "1"),
     "velocity_width_model_error": ("relative error of W_v of the theory itself", "1"),
     "border_model_error": ("relative error of W_v at the border of the theory itself", "1"),
     "displacement_width_model_error": ("relative error of W_x of the theory itself", "1"),
@@ -115,7 +112,7 @@ ATTRIBUTES = {
     "mean_displacement_model_error": ("error of <dx> of the theory itself, over s", "1"),
     "wave_model_error": ("error of the slowest wave of density of the theory, of its height", "1"),
     "density_model_error": ("error of the density of the theory itself, of close packing", "1"),
-    "cells": ("cells of the mesh along y", "1"),
+    "wall_force_model_error": ("relative error of the force on walls of the theory itself", "1"),
     "iterations": ("iterations until the equations were satisfied", "1"),
 }
 
@@ -123,7 +120,7 @@ ATTRIBUTES = {
 OF_FLUID, OF_RODS = "fluid", "rods"
 
 _RODS_TOLERANCE = 1e-6
-_AXES = frozenset({"x", "y", "velocity", "time"})
+_AXES = frozenset({"x", "time"})
 
 
 def result(
@@ -152,8 +149,8 @@ def result(
     method
         How it was computed, for the provenance: anything JSON can hold.
     coordinates
-        Values along the dimensions x, y, time, velocity and so on, if the result has them; the
-        particles and contacts get their numbers.
+        Values along the dimensions x, time, mode and so on, if the result has them; the particles
+        and contacts get their numbers.
     status, end_time
         ``completed``, ``diverged`` or ``interrupted``, and the time reached.
     residual

@@ -41,8 +41,7 @@ FLOORS = {
         {"statics", "exact"},
         {"rods"},
         {"starts"},
-        {"kinetic_equation"},
-        {"correlations"},
+        {"gas"},
         {"fluids"},
     ),
     "comparison": (

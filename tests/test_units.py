@@ -10,7 +10,6 @@ import pytest
 from every_solver import SOLVERS, Given
 
 from crazybilliards.kinetic import compressed, displaced
-from crazybilliards.kinetic.kinetic_equation import criticality
 from crazybilliards.model import Chain
 
 
@@ -95,9 +94,7 @@ def test_units_do_not_matter(case):
         np.testing.assert_array_equal(*found, variable)
 
 
-@pytest.mark.parametrize("name", [name for name in SOLVERS if name.startswith("critical")])
-def test_units_do_not_matter_to_critical_chains(name, monkeypatch):
-    monkeypatch.setattr(criticality, "_critical_drag", lambda damping: (damping, 0.0))
-    chain = LINEAR.replace(**SOLVERS[name].needs)
-    one, other = (SOLVERS[name].solve(u.chain(chain), None).value for u in (LONG, SHORT))
+def test_units_do_not_matter_to_a_critical_size():
+    chain = LINEAR.replace(**SOLVERS["critical_size"].needs)
+    one, other = (SOLVERS["critical_size"].solve(u.chain(chain), None) for u in (LONG, SHORT))
     assert other == one

@@ -120,7 +120,7 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
         padded with NaN. Coordinates that depend on the case, such as x or the mean position,
         have those dimensions too, and the dimension of x is then ``x_index``. The attributes that
         belong to a case are variables without own dimensions: every number (``end_time``,
-        ``time_step_error``, ``mesh_error``, ...; NaN where a case has none), ``status``,
+        ``time_step_error``, ``residual``, ...; NaN where a case has none), ``status``,
         ``provenance`` and ``file``, the name of its file, and every other text that differs between
         the cases. The attribute ``parameters`` holds the common parameters as JSON.
 

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import COLOURS
 from crazybilliards.comparison.layout import panels
-from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_growth_rate
+from crazybilliards.kinetic.gas.criticality import weak_damping_growth_rate
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort

@@ -7,7 +7,7 @@ import pytest
 
 import crazybilliards as cb
 from crazybilliards.comparison.coverage import coverage_density
-from crazybilliards.kinetic.kinetic_equation.weak_damping import weak_damping_growth_rate
+from crazybilliards.kinetic.gas.criticality import weak_damping_growth_rate
 from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import EXACT, make_scratch

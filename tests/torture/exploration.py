@@ -145,9 +145,7 @@ def require_sound(result):
         else:
             assert np.isfinite(values).all(), name
         if str(name).endswith(("width", "density", "rods", "energy", "_error")):
-            # A density of finite elements may ripple around zero.
-            ripple = 0.1 if name == "phase_space_density" else 1e-9
-            assert float(values.min()) >= -ripple * float(abs(values).max()), name
+            assert float(values.min()) >= -1e-9 * float(abs(values).max()), name
     chain = chain_of(result)
     assert isinstance(chain, Chain)
     if "mean_position" in result.coords:

@@ -137,21 +137,7 @@ EXPLORED = {
             cells=st.integers(8, 200),
         ),
     ),
-    kinetic.relax_phase_space: (
-        100,
-        {"duration": 0.5, "cells": 6, "progress": False},
-        arguments(
-            duration=st.floats(0.1, 3),
-            every=st.floats(0.1, 2),
-            time_step=st.floats(0.01, 1),
-            cells=st.integers(4, 12),
-        ),
-    ),
-    kinetic.phase_space: (
-        100,
-        {"cells": 6},
-        arguments(order=st.sampled_from([1, 2]), tolerance=st.floats(0.002, 0.1), cells=SIZES),
-    ),
+    kinetic.steady_state: (300, {}, arguments(correlations=st.booleans())),
     kinetic.displaced: (100, {"shift": 1.0}, arguments(shift=ORDINARY)),
     kinetic.compressed: (100, {"factor": 1.0}, arguments(factor=ORDINARY)),
     given_start: (
@@ -160,8 +146,7 @@ EXPLORED = {
         arguments(position=ORDINARY, velocity=ORDINARY, replicas=st.integers(1, 3)),
     ),
 }
-RESTITUTIONS = {simulate: ANY, kinetic.phase_space: NEAR_ONE, kinetic.relax_phase_space: NEAR_ONE}
-STARTED = (kinetic.hydrodynamics, kinetic.relax_phase_space)
+RESTITUTIONS = {simulate: ANY, kinetic.steady_state: ANY, kinetic.hydrodynamics: NEAR_ONE}
 
 
 @pytest.mark.filterwarnings("ignore:amplitude=0 and a start at rest")
@@ -177,7 +162,7 @@ def test_a_result_is_sound_or_refused(function):
             parameters = parameters | {"gap": 0.0, "spring": "linear"}
         chain = outcome(Chain, **parameters)
         given_to = {**always, **options}
-        if chain is not None and function in STARTED:
+        if chain is not None and function is kinetic.hydrodynamics:
             some = starts(chain)
             chain = chain if some else None
             given_to["start"] = some[number if number < len(some) else 0] if some else None
