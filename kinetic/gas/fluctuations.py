@@ -41,6 +41,7 @@ the border it is not.
 
 from __future__ import annotations
 
+import warnings
 from typing import NamedTuple
 
 import numpy as np
@@ -48,7 +49,7 @@ from scipy.linalg import block_diag, eigvals, solve_continuous_lyapunov
 
 from crazybilliards.kinetic.gas.cells import Cells, of_cells
 from crazybilliards.kinetic.gas.collision_moments import CollisionMoments, moments_of_collisions
-from crazybilliards.kinetic.gas.mean_state import Medium
+from crazybilliards.kinetic.gas.mean_state import Medium, NoSteadyStateError
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 
@@ -110,7 +111,12 @@ class LinearResponse(NamedTuple):
         h = np.zeros_like(self.noise)
         for basis in self.bases:
             generator, noise = (basis.T @ matrix @ basis for matrix in (self.generator, self.noise))
-            half = solve_continuous_lyapunov(generator, -noise)
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", RuntimeWarning)  # rates too far apart for doubles
+                try:
+                    half = solve_continuous_lyapunov(generator, -noise)
+                except RuntimeWarning as problem:
+                    raise NoSteadyStateError(f"its fluctuations: {problem}") from problem
             h += basis @ ((half + half.T) / 2) @ basis.T
         return h
 

@@ -161,7 +161,7 @@ def heated(
         bands = banded(noise + conducted + lost, across + lost_across)
         new = np.asarray(solve_banded((1, 1), bands, noise * (1 - shared)))
         if not (np.isfinite(new).all() and (new > 0).all()):
-            raise NoSteadyStateError("no steady state: collisions give more than damping takes")
+            raise NoSteadyStateError("collisions give more than damping takes")
         change = float(np.abs(np.log(new / T)).max())
         T = T + _MIXED * (np.maximum(new, _COLDEST * T) - T)
         if change < _SAME:

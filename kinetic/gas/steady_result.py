@@ -203,7 +203,9 @@ def _mode_variances(chain: Chain, found: Steady, of: Fluctuations, rods: Rods) -
     q = np.arange(cells.rods.size)[:, None]
 
     def waves(labels: Array) -> Array:
-        return np.asarray(np.sqrt(np.where(q == 0, 1, 2) / size) * np.cos(np.pi * q * labels / size))
+        return np.asarray(
+            np.sqrt(np.where(q == 0, 1, 2) / size) * np.cos(np.pi * q * labels / size)
+        )
 
     middles = np.arange(0.5, size)
     shared = np.interp(middles, cells.contacts, of.background.shared[found.problem.inner])
