@@ -60,6 +60,20 @@ def test_pages_state_the_numbers_of_their_tables(statements):
         assert not [number for number in numbers if number not in words(page)], page
 
 
+def test_the_errors_of_the_gas_are_those_that_were_measured():
+    shown = pd.read_csv(ROOT / "docs/tables/steady_state_errors.csv", dtype=str)
+    measured = pd.read_csv(ROOT / "kinetic/measured/steady_state.csv")
+    weakly = (measured.kind == "driven") & (measured.Gamma < 0.5)
+    kinds = ["linear", "gap", "quadratic", "box", "gas in a box", "inelastic walls"]
+    chains = dict(iter(measured.groupby(measured.kind.mask(weakly, "weakly driven"))))
+    for kind, (_, row) in zip([*kinds, "weakly driven", "driven"], shown.iterrows(), strict=True):
+        errors = 100 * chains.pop(kind).loc[:, "velocity_width":].dropna(axis=1, how="all")
+        told = [f"{error.median():.1f} ({error.max():.0f})" for _, error in errors.items()]
+        assert f"({len(errors)})" in row.chains
+        assert row.dropna().tolist()[1:] == told
+    assert not chains
+
+
 def test_a_file_that_code_or_a_front_page_names_exists():
     named = re.compile(r"(?<![\w./-])(?:docs|studies|benchmarks|notebooks)/[\w/-]+\.\w+")
     script = re.compile(r"python\s+-m\s+(studies\.\w+)")
