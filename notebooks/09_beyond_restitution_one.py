@@ -34,10 +34,17 @@
 # seeds. After a change run all cells below it again.
 
 # %% tags=["hide-input"]
+import warnings
+
 import matplotlib.pyplot as plt
 import numpy as np
 from solutions import lesson_09 as solutions
 from teaching import BLUE, GREEN, ORANGE, PINK, agree, check, panels, safe
+
+from crazybilliards.kinetic import UnmeasuredWarning
+
+# Here errors are measured.
+warnings.simplefilter("ignore", UnmeasuredWarning)
 
 # %%
 friction = 1
@@ -441,9 +448,9 @@ assert 0.3 < gone < 1.5
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# Collisions are faster than damping. The cooled gas cannot resist the springs. It falls together,
-# which gives it energy for a while. Then it is denser than in its steady state, and cools too far.
-# The theory has no memory here, and is up to 6 % off.
+# The cooled gas cannot resist the springs. It falls together, which gives it energy for a while.
+# Then it is denser than in its steady state, and cools too far. The theory has no memory here, and
+# is up to 6 % off.
 # </details>
 #
 # ## Exercises
