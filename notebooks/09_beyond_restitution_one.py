@@ -448,9 +448,9 @@ assert 0.3 < gone < 1.5
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# The cooled gas cannot resist the springs. It falls together,
-# which gives it energy for a while. Then it is denser than in its steady state, and cools too far.
-# The theory has no memory here, and is up to 6 % off.
+# The cooled gas cannot resist the springs. It falls together, which gives it energy for a while.
+# Then it is denser than in its steady state, and cools too far. The theory has no memory here, and
+# is up to 6 % off.
 # </details>
 #
 # ## Exercises
