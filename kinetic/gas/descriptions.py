@@ -145,7 +145,9 @@ class Points:
     ) -> MeanState:
         """Solve for the state with a closure at the contacts. ``spread``: h_uu at the cells."""
         labels, cells, fine = self.labels, self.labels.cells, self.labels.fine
-        met = 1 - 1 / medium.size  # of L points by one of them
+        # A point meets L - 1 of L. In the mean field T is that of the motion about the centre of
+        # mass, which collisions leave alone: its share 1/L of the noise is missing as well.
+        met = 1.0 if isinstance(closure, Independent) else 1 - 1 / medium.size
         along = closure.at(cells.contacts, fine.contacts)
         shared = closure.at(cells.contacts, fine.centres).collective
         h = _continued(spread, cells, fine)

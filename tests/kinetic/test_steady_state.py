@@ -9,7 +9,7 @@ from crazybilliards.comparison import deviation, smooth
 from crazybilliards.kinetic import equilibrium, steady_state
 from crazybilliards.kinetic.gas import agreement, mean_state
 from crazybilliards.kinetic.gas.cells import make_cells
-from crazybilliards.kinetic.gas.steady_result import rods_of
+from crazybilliards.kinetic.gas.stationary_result import rods_of
 from crazybilliards.kinetic.rods import places
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate

@@ -30,7 +30,7 @@ from crazybilliards.kinetic.gas.agreement import in_agreement, mean_field
 from crazybilliards.kinetic.gas.cells import make_cells
 from crazybilliards.kinetic.gas.fixed_point import NoFixedPointError
 from crazybilliards.kinetic.gas.mean_state import NoSteadyStateError
-from crazybilliards.kinetic.gas.steady_result import in_vocabulary
+from crazybilliards.kinetic.gas.stationary_result import in_vocabulary
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import shown
