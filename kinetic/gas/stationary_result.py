@@ -116,7 +116,7 @@ def _over_positions(chain: Chain, found: Steady, rods: Rods) -> tuple[dict[str, 
     medium, W, R = found.problem.medium, chain.free_velocity_width, chain.radius
     cells = found.labels.fine if found.labels else found.problem.cells
     y = medium.length * (found.labels.place if found.labels else found.mean.place)
-    label = cells.centres - chain.size / 2
+    label, y = _to_the_ends(cells.centres - chain.size / 2, y, chain.size / 2)
     places = y + 2 * R * label
     x = position_grid(chain, float(np.abs(places).max() - chain.anchors[-1]))
     shapes = None
@@ -139,6 +139,16 @@ def _over_positions(chain: Chain, found: Steady, rods: Rods) -> tuple[dict[str, 
         "heat_flux": ("x", _heat_flux(chain, found, number)),
     }
     return {"x": x}, variables
+
+
+def _to_the_ends(label: Array, y: Array, end: float) -> tuple[Array, Array]:
+    """Add the ends of the chain, half a cell beyond the outermost centres."""
+    if label.size == 1:
+        return label, y
+    half = (end - label[-1]) / (label[-1] - label[-2]) * (y[-1] - y[-2])
+    return np.pad(label, 1, constant_values=(-end, end)), np.pad(
+        y, 1, constant_values=(y[0] - half, y[-1] + half)
+    )
 
 
 def _shapes(chain: Chain, length: float, rods: Rods) -> RodPlaces:
