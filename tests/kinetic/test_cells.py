@@ -1,19 +1,9 @@
-"""Cells of rods: they hold all rods, and fields on them are continued to single rods."""
+"""Cells of rods: they hold all rods, and covariances are continued to short distances."""
 
 import numpy as np
 import pytest
 
-from crazybilliards.kinetic.gas.cells import MOST, at_distance, cells_of_points, make_cells, of_rods
-
-
-def whole(covariance):
-    """Return the symmetric matrix of covariances given over particle and separation."""
-    size = len(covariance)
-    matrix = np.empty((size, size))
-    for r in range(size):
-        i = np.arange(size - r)
-        matrix[i, i + r] = matrix[i + r, i] = covariance[: size - r, r]
-    return matrix
+from crazybilliards.kinetic.gas.cells import MOST, at_distance, cells_of_points, make_cells
 
 
 @pytest.mark.parametrize("size", [1, 10, MOST, MOST + 1, 1000, 100_000])
@@ -46,33 +36,3 @@ def test_covariances_are_continued_linearly_to_a_short_distance(size):
     spiked = covariance + np.diag(contact, 1) + np.diag(contact, -1)
     found = at_distance(spiked, cells.centres, cells.contacts, 1.0, nearest=2)
     np.testing.assert_allclose(found, 3 - 0.01 + 0.002 * cells.contacts, rtol=2e-3)
-
-
-def test_a_cell_that_is_one_rod_has_the_covariance_of_the_rod():
-    cells = make_cells(20)
-    given = np.random.default_rng(1).normal(size=(20, 20))
-    given = given + given.T
-    found = whole(of_rods(given, cells))
-    np.fill_diagonal(found, np.diag(given))
-    np.testing.assert_allclose(found, given, rtol=1e-12)
-
-
-def test_rods_within_cells_have_the_covariance_along_the_line_to_the_next_cells():
-    """A covariance that falls along the chain: errors of the second order in cell over length."""
-
-    def fall(a, b):
-        return np.exp(-np.abs(a - b) / 60) * (1 + (a + b) / 1000)
-
-    rods, within, beyond = np.arange(400) + 0.5, [], []
-    far = (np.abs(rods[:, None] - rods) > 20)[20:-20, 20:-20]
-    for most in (40, 80):
-        cells = make_cells(400, most)
-        found = of_rods(fall(cells.centres[:, None], cells.centres), cells)
-        wanted = fall(rods[:, None], rods)
-        away = np.abs(whole(found) - wanted)[20:-20, 20:-20]
-        within.append(away[~far].max())
-        beyond.append(away[far].max())
-    assert within[0] < 0.08
-    assert within[1] < within[0] / 3
-    assert beyond[0] < 0.01
-    assert beyond[1] < beyond[0] / 3

@@ -3,40 +3,49 @@
 import numpy as np
 import pytest
 
-from crazybilliards.kinetic import critical_size
-from crazybilliards.kinetic.kinetic_equation.weak_damping import (
-    weak_damping_critical_size,
-    weak_damping_growth_rate,
-)
+from crazybilliards.kinetic import critical_size, steady_state
+from crazybilliards.kinetic.gas.criticality import weak_damping_growth_rate
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 from crazybilliards.reproduction.fits import fit_growth
 
-# gamma/sqrt(k m) = 0.1: weakly damped, where the answer is known.
-WEAK = Chain(restitution=1.05, damping=0.1 * np.sqrt(4 * np.pi / 3))
+
+def damped(ratio, **others):
+    """Return a chain with this gamma/sqrt(k m)."""
+    chain = Chain(**others)
+    return chain.replace(damping=ratio * chain.damping / chain.relative_damping)
 
 
-def test_closed_form_for_weak_damping():
-    """Each pair meets once in half a period and gains (e^2 - 1) of its relative energy, while.
+@pytest.mark.parametrize(("ratio", "off"), [(1e-3, 1e-4), (0.1, 0.01), (3.0, 0.06)])
+def test_the_critical_size_is_that_of_weak_damping(ratio, off):
+    """Each pair meets once in half a period and gains e^2 - 1 of its relative energy.
 
-    damping takes pi gamma/sqrt(k m) of all energy: to first order in e - 1 they balance at
-    |lambda| L = (pi/2) gamma/sqrt(k m).
+    Damping takes pi gamma/sqrt(k m) of all energy meanwhile. To first order in e - 1 they balance
+    at (e - 1) L = pi gamma/sqrt(k m). The gas agrees the better the weaker the damping.
     """
-    value, error = critical_size(WEAK)
-    assert value == pytest.approx(np.pi * 0.1 / 0.05, rel=2e-3)
-    assert 0 < error < 0.01 * value
+    value, error = critical_size(damped(ratio, restitution=1.05, size=3, gap=2.0))
+    assert value == pytest.approx(np.pi * ratio / 0.05, rel=1e-12)
+    assert 0 < error < off * value
 
 
-def test_the_closed_form_is_one_number_everywhere():
-    """The limit of the kinetic equation, the number of the page, and for e -> 1 that of growth."""
-    weak = WEAK.replace(damping=1e-4)
-    assert weak_damping_critical_size(weak) == pytest.approx(critical_size(weak).value, rel=1e-12)
-    driven = Chain(size=100, restitution=1.01, damping=0.4)
-    nearly_elastic = driven.replace(restitution=1 + 1e-6)
-    below, above = (
-        nearly_elastic.replace(size=round(share * weak_damping_critical_size(nearly_elastic)))
-        for share in (1 - 2e-6, 1 + 2e-6)
-    )
+@pytest.mark.parametrize(("share", "exists"), [(0.97, True), (1.015, False)])
+def test_the_error_is_the_distance_from_where_the_steady_state_of_the_gas_ends(share, exists):
+    chain = damped(1.5, restitution=1.003)
+    value, error = critical_size(chain)
+    longest = chain.replace(size=round(share * (value - error)))
+    assert longest.size < value
+    if exists:
+        hot = steady_state(longest, correlations=False).velocity_width
+        assert float(hot.min()) > 2 * chain.free_velocity_width
+    else:
+        with pytest.raises(ValueError, match="collisions give more than damping takes"):
+            steady_state(longest, correlations=False)
+
+
+def test_growth_begins_at_the_critical_size_for_restitutions_near_1():
+    chain = Chain(restitution=1 + 1e-6, damping=0.4)
+    size = critical_size(chain).value
+    below, above = (chain.replace(size=round(share * size)) for share in (1 - 2e-6, 1 + 2e-6))
     assert weak_damping_growth_rate(below) < 0 < weak_damping_growth_rate(above)
 
 
@@ -59,14 +68,3 @@ def test_energies_grow_at_the_rate_of_weak_damping_where_it_holds(chain):
         hot = run.kinetic_energy.values > 10 * chain.size * chain.temperature / 2
         rates.append(fit_growth(run.time.values[hot], run.kinetic_energy.values[hot]).rate)
     assert np.mean(rates) == pytest.approx(rate, rel=0.05)
-
-
-@pytest.mark.compiled
-def test_the_closed_form_takes_over_from_the_equation():
-    """Where both are solved they agree: below gamma/sqrt(k m) = 1e-3 the closed form is taken."""
-    weak, weaker = (
-        critical_size(WEAK.replace(damping=damping * np.sqrt(WEAK.mass)))
-        for damping in (1.001e-3, 0.999e-3)
-    )
-    assert weak.value / 1.001 == pytest.approx(weaker.value / 0.999, rel=1e-5)
-    assert weak.error == pytest.approx(weaker.error, rel=0.01)

@@ -5,11 +5,11 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import curve_fit
 
-from crazybilliards.kinetic.correlations.displacements import relaxing_pairs
-from crazybilliards.kinetic.correlations.pair_covariance import scales
-from crazybilliards.kinetic.correlations.stationary import in_agreement
-from crazybilliards.kinetic.kinetic_equation.order_statistics import mirrored, points
-from crazybilliards.kinetic.kinetic_equation.velocity_moments import moments
+from crazybilliards.kinetic.gas.agreement import in_agreement
+from crazybilliards.kinetic.gas.cells import make_cells
+from crazybilliards.kinetic.gas.displacements import relaxing_pairs
+from crazybilliards.kinetic.gas.fluctuations import scales
+from crazybilliards.kinetic.gas.stationary_result import rods_of
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
@@ -17,17 +17,18 @@ STEP = 0.2  # T, between two values of a correlation function
 NUMBER = 40
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("size", "restitution"), [(30, 0.9), pytest.param(140, 0.6, marks=pytest.mark.validate)]
 )
 def test_the_centre_of_mass_is_displaced_as_if_alone(size, restitution):
     """The variance of independent points, and what neighbourhoods have in common: W^2/L."""
-    found = in_agreement(Chain(size=size, restitution=restitution), 2e-3)
-    of_points = moments(found.state.space, found.state.f)
-    own = (of_points.weights * of_points.density) @ of_points.y**2
-    rods = found.problem.on_whole_cells().cells.rods
-    assert own + rods @ found.displaced.displacement @ rods / size == pytest.approx(1, abs=0.015)
+    chain = Chain(size=size, restitution=restitution)
+    found = in_agreement(chain, make_cells(size))
+    labels, displaced = found.labels, found.displaced
+    own = labels.fine.rods @ labels.place**2 / size
+    rods = displaced.cells.rods
+    shared = rods @ displaced.pairs.displacement @ rods / size
+    assert own + shared == pytest.approx(1, abs=0.015)
 
 
 def waves_of(values):
@@ -49,17 +50,18 @@ def damping(correlation):
 
 def predicted(chain):
     """Return the damping of the waves 1 and 2 in the linear equation with the stress."""
-    found, size = in_agreement(chain, 2e-3), chain.size
-    around, cells = found.background, found.problem.cells
-    own = points(size, mirrored(moments(found.state.space, found.state.f)))
-    response, _ = relaxing_pairs(found.problem, around, found.closure.collective)
-    T_f = around.temperature + around.shared - found.closure.collective
-    scale = np.append(scales(cells, around._replace(temperature=T_f)), np.ones(size - 1))
+    size = chain.size
+    found = in_agreement(chain, make_cells(size))
+    problem, (closure, around, *_) = found.problem, found.fluctuations
+    response, _ = relaxing_pairs(problem, around, closure.collective)
+    T_f = around.temperature + around.shared - closure.collective
+    scale = np.append(scales(problem, around._replace(temperature=T_f)), np.ones(size - 1))
     h = response.stationary() * np.outer(scale, scale)
     # Of independent points in their order, as evenly distributed ones have it.
     i = np.arange(1, size + 1)
     bridge = np.minimum.outer(i, i) * (size + 1 - np.maximum.outer(i, i))
-    local = np.sqrt(own.position_variance / np.diag(bridge))
+    own = rods_of(chain, found).width ** 2 - np.diag(found.displaced.pairs.displacement)
+    local = np.sqrt(own / np.diag(bridge))
     h[:size, :size] += bridge * np.outer(local, local)
     step = expm(
         response.generator * scale[:, None] / scale * STEP * np.sqrt(chain.stiffness / chain.mass)

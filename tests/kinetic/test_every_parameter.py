@@ -18,7 +18,6 @@ from scipy.interpolate import CubicSpline
 
 import crazybilliards as cb
 from crazybilliards.kinetic import displaced, force_balance
-from crazybilliards.kinetic.kinetic_equation import criticality
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
 from crazybilliards.model import chain as model_chain
@@ -82,17 +81,6 @@ MEANINGLESS = {
     ("breathing_cloud", "radius"): _POINTS,
     **{(start, "restitution"): _STARTS for start in ("displaced", "compressed")},
 }
-
-
-@pytest.fixture(autouse=True)
-def _coarse(monkeypatch):
-    """Take a drag short of the critical one: what it depends on is the same."""
-    monkeypatch.setattr(criticality, "_critical_drag", drag)
-
-
-@cache
-def drag(damping):
-    return float(criticality.drag_at_noise(damping, (0.85,), cells=12)[0]), 0.0
 
 
 @cache

@@ -7,7 +7,7 @@ import pytest
 from pde import MemoryStorage
 from scipy.optimize import elementwise
 
-from crazybilliards.kinetic import displaced, force_balance, hydrodynamics, relax_phase_space
+from crazybilliards.kinetic import displaced, force_balance, hydrodynamics
 from crazybilliards.kinetic.fluids import eulerian_frame
 from crazybilliards.kinetic.fluids.pde_solver import make_state, solve
 from crazybilliards.model import Chain
@@ -29,16 +29,15 @@ def test_the_number_of_cells_that_is_called_enough_is():
     np.testing.assert_allclose(rough.centre, fine.centre, atol=0.01 * chain.thermal_length)
 
 
-@pytest.mark.parametrize("theory", [hydrodynamics, relax_phase_space])
 @pytest.mark.parametrize("call", [(), (100.0,), (None, 100.0)])
-def test_a_missing_start_is_explained(theory, call):
+def test_a_missing_start_is_explained(call):
     """A duration in its place is the usual mistake."""
     with pytest.raises(ValueError, match="start must be a result with density over x") as caught:
-        theory(Chain(size=5), *call, **QUIET)
+        hydrodynamics(Chain(size=5), *call, **QUIET)
     for name in ("displaced(", "compressed(", "force_balance"):
         assert name in str(caught.value)
     with pytest.raises(ValueError, match="duration must be a number, got None"):
-        theory(Chain(size=5), displaced(Chain(size=5), 1.0), **QUIET)
+        hydrodynamics(Chain(size=5), displaced(Chain(size=5), 1.0), **QUIET)
 
 
 @pytest.mark.compiled

@@ -9,8 +9,8 @@ from crazybilliards.comparison import deviation, smooth
 from crazybilliards.kinetic import equilibrium, steady_state
 from crazybilliards.kinetic.gas import agreement, mean_state
 from crazybilliards.kinetic.gas.cells import make_cells
+from crazybilliards.kinetic.gas.quadratic_springs import mean_slope
 from crazybilliards.kinetic.gas.stationary_result import rods_of
-from crazybilliards.kinetic.rods import places
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 
@@ -29,8 +29,8 @@ KINDS = {
     "linear": Chain(size=20, restitution=0.5),
     "gap": Chain(size=20, restitution=0.5, gap=0.5),
     "quadratic": Chain(size=20, restitution=0.5, spring="quadratic"),
-    "box": Chain(size=20, restitution=0.6, box=42),
-    "quadratic box": Chain(size=20, restitution=0.6, box=42, spring="quadratic"),
+    "box": Chain(size=10, restitution=0.8, box=21),
+    "quadratic box": Chain(size=10, restitution=0.8, box=21, spring="quadratic"),
     "gas": gas(12, 0.5, 0.1),
     "inelastic walls": gas(10, 0.85, 0.1, 0.5),
 }
@@ -134,8 +134,8 @@ AWAY = {
     "linear": (0.02, 0.03),
     "gap": (0.015, 0.03),
     "quadratic": (0.025, 0.035),
-    "box": (0.035, 0.065),
-    "quadratic box": (0.04, 0.07),
+    "box": (0.02, 0.02),
+    "quadratic box": (0.02, 0.02),
     "gas": (0.01, 0.01),
     "inelastic walls": (0.02, 0.09),
 }
@@ -183,7 +183,7 @@ OF_PAIRS = {
 }
 
 
-def test_results_have_the_variables_that_the_docstring_names(theory, monkeypatch):
+def test_results_have_the_variables_that_the_docstring_names(theory):
     field = steady_state(KINDS["linear"], correlations=False)
     assert set(field.data_vars) == set(OVER)
     assert set(theory("linear").data_vars) == set(OVER | OF_PAIRS)
@@ -192,11 +192,25 @@ def test_results_have_the_variables_that_the_docstring_names(theory, monkeypatch
         assert theory("linear")[name].dims == ((dims,) if isinstance(dims, str) else dims)
     assert theory("linear").attrs["residual"] < 2e-3
     assert theory("linear").attrs["density_of"] == "rods"
-    monkeypatch.setattr(places, "MOST_RODS", 19)
-    unresolved = steady_state(KINDS["linear"], correlations=False)
-    assert unresolved.attrs["density_of"] == "fluid"
-    spacing = float(unresolved.x[1] - unresolved.x[0])
-    assert float(unresolved.density.sum() * spacing) == pytest.approx(20, rel=1e-3)
+
+
+@pytest.mark.parametrize("changes", [{}, {"spring": "quadratic"}, {"stiffness": 0, "box": 90}])
+def test_mean_gaps_are_the_distances_of_mean_places(changes):
+    """By order statistics of contacts, and of rods. Mutation: g without L/(L + 1)."""
+    chain = Chain(size=20, **changes)
+    mean = agreement.in_agreement(chain, make_cells(20)).mean
+    gaps = mean.gap[1:-1] if chain.box else mean.gap
+    np.testing.assert_allclose(gaps, np.diff(mean.place), rtol=2e-3)
+
+
+def test_the_slope_of_quadratic_springs_is_the_mean_over_their_fluctuations():
+    """2 K <|x + u|>, by sampling u with the variance that the slope implies. Mutation: 1.5 K."""
+    x, T, gap, spread = np.array([0.0, 1.5]), np.array([0.4, 0.4]), np.array([0.3, 0.3]), 0.05
+    k = mean_slope(0.8, x, T, gap, np.full(2, spread))
+    local = T / np.sqrt(k**2 + 4 * k * T / gap**2)
+    u = np.random.default_rng(1).normal(size=(400_000, 2)) * np.sqrt(local + spread)
+    sampled = 2 * 0.8 * np.abs(x + u)
+    assert (np.abs(sampled.mean(0) - k) < 5 * sampled.std(0) / np.sqrt(len(u))).all()
 
 
 def test_correlations_cool_a_gas(theory):
@@ -219,7 +233,7 @@ def test_cells_of_several_rods_change_little(changes):
 
 def test_no_agreement_is_an_error_with_a_reason(monkeypatch):
     monkeypatch.setattr(agreement, "_MOST_ITERATIONS", 2)
-    with pytest.raises(ValueError, match="no steady state that could be.*after 2 iterations"):
+    with pytest.raises(ValueError, match=r"no steady state that could be.*after 2 iterations"):
         steady_state(CHAIN)
 
 

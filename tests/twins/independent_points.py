@@ -1,14 +1,15 @@
-r"""The mean field of the gas as a simulation of particles: points that are independent of each other.
+r"""The mean field of the gas as a simulation of particles: independent points.
 
 Many points move in the well of a spring with damping and noise. In the time dt each meets another
-point of its cell of y, chosen at random, with the probability (L - 1) f(y) |v - u| dt, f being the
-share of the points per length. Then its own velocity becomes
+point of its cell of y, chosen at random, with the probability L f(y) |v - u| dt, f being the share
+of the points per length. Then its own velocity becomes
 
     v* = v - lambda (v - u),      lambda = (1 - e)/2,
 
-and that of the other stays (K. Nanbu, J. Phys. Soc. Jpn. 49, 2042, 1980). Nothing is known here of
-labels, moments or closures. Groups of L points, drawn at random and in order, are the rods. In the
-units of the free rod.
+and that of the other stays (K. Nanbu, J. Phys. Soc. Jpn. 49, 2042, 1980). A point meets L - 1
+others, and its motion about their common centre of mass has the share 1 - 1/L of the noise. L
+others and the whole noise are the same. Nothing is known here of labels, moments or closures.
+Groups of L points, drawn at random and in order, are the rods. In the units of the free rod.
 """
 
 import numpy as np
@@ -27,7 +28,7 @@ def rods_of_independent_points(size, restitution, damping, number, duration, war
         y += STEP / 2 * v
         v -= STEP / 2 * y
         v = kept * v + noise * rng.normal(size=number)
-        v = _collided(y, v, size - 1, restitution, rng)
+        v = _collided(y, v, size, restitution, rng)
         v = kept * v + noise * rng.normal(size=number)
         v -= STEP / 2 * y
         y += STEP / 2 * v
@@ -37,14 +38,14 @@ def rods_of_independent_points(size, restitution, damping, number, duration, war
     return places.mean(0), squares.mean(0), squares.std(0) / np.sqrt(len(samples) - 1)
 
 
-def _collided(y, v, partners, restitution, rng):
+def _collided(y, v, size, restitution, rng):
     cell = np.floor(y / CELL).astype(int)
     cell -= cell.min()
     order, count = np.argsort(cell), np.bincount(cell)
     first = np.cumsum(count) - count
     others = order[first[cell] + (rng.random(y.size) * count[cell]).astype(int)]
     w = v - v[others]
-    rate = partners * count[cell] / (y.size * CELL) * np.abs(w)
+    rate = size * count[cell] / (y.size * CELL) * np.abs(w)
     meets = rng.random(y.size) < rate * STEP
     return v - np.where(meets, (1 - restitution) / 2 * w, 0.0)
 
