@@ -1,7 +1,7 @@
 """Anderson's acceleration of a fixed-point iteration, with bounded steps.
 
 scipy.optimize.anderson takes any step that its line search likes, and an evaluation here is a
-kinetic equation that cannot be solved far from where it was solved before.
+state of the gas that cannot be found far from where one was found before.
 """
 
 from __future__ import annotations

@@ -79,7 +79,10 @@ def test_elastic_chains_are_exact(chain):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_noise_gives_what_damping_and_collisions_take(kind, theory):
-    """Points and rods disagree a little on it. At an inelastic wall it takes its share as well."""
+    """Points and rods disagree a little on it. An inelastic wall takes its share as well.
+
+    Mutations: a without 1 - 1/L, the loss at a wall.
+    """
     chain, found = KINDS[kind], theory(kind)
     given = chain.damping * chain.free_velocity_width**2 * chain.size
     taken = float(chain.damping * (found.velocity_width**2).sum() + found.contact_loss.sum())
