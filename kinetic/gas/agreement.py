@@ -15,6 +15,7 @@ from crazybilliards.kinetic.gas.cells import Cells, make_cells
 from crazybilliards.kinetic.gas.closure import Closure, Independent, implied, pair_strength
 from crazybilliards.kinetic.gas.descriptions import Descriptions, Labels, MeanState
 from crazybilliards.kinetic.gas.displacements import relaxing_pairs
+from crazybilliards.kinetic.gas.driven import driven_points
 from crazybilliards.kinetic.gas.fixed_point import NoFixedPointError, find_fixed_point
 from crazybilliards.kinetic.gas.fluctuations import (
     Background,
@@ -59,14 +60,31 @@ class Steady(NamedTuple):
     displaced: Displaced | None = None
     residual: float = 0.0
     iterations: int = 0
+    flux: Array | None = None  # n q at the fine cells of labels; None: that of the closure
 
 
 def mean_field(chain: Chain, cells: Cells) -> Steady:
     """Return the steady state in which colliding rods are independent."""
     problem = Problem.of(chain, cells)
+    if is_driven(chain):
+        return _driven(chain, problem)
     descriptions = Descriptions(chain, problem.medium, cells, mean_field=True)
     mean = descriptions.solve(problem.medium, Independent(), chain.restitution)
     return Steady(problem, mean, descriptions.labels)
+
+
+def is_driven(chain: Chain) -> bool:
+    """Return whether the points of a chain have the heavy tails that a closure does not know."""
+    bare = chain.exchangeable and not chain.box and chain.spring == "linear"
+    return chain.restitution > 1 and chain.size > 1 and bare
+
+
+def _driven(chain: Chain, problem: Problem) -> Steady:
+    """Return the mean field with the temperatures of points in phase space."""
+    labels, found = Labels(problem.medium, problem.cells), driven_points(chain)
+    T, flux = found.at(labels.score)
+    mean = labels.averaged(T, labels.balanced(T, np.zeros(T.size)))
+    return Steady(problem, mean, labels, residual=found.residual, flux=chain.size * flux)
 
 
 def in_agreement(chain: Chain, cells: Cells) -> Steady:

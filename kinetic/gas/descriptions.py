@@ -99,6 +99,11 @@ class Labels:
             gap = gap[1:-1]
         return Balance(self.to_rods @ balance.place, self.gap_to_contacts @ gap, force)
 
+    def averaged(self, T: Array, balance: Balance) -> MeanState:
+        """Return the state of points, averaged over the labels at which rods are found."""
+        of, at_contacts = self.of_rods(balance), self.to_contacts @ T
+        return MeanState(of.place, self.to_rods @ T, at_contacts, of.force, of.gap)
+
 
 class Rods:
     """The mean state on cells of whole rods."""
@@ -159,9 +164,7 @@ class Points:
             lambda T: met * along.strength(T, e),
             shared,
         )
-        T, of_rods = self.temperature, labels.of_rods(balance)
-        contacts = labels.to_contacts @ T
-        return MeanState(of_rods.place, labels.to_rods @ T, contacts, of_rods.force, of_rods.gap)
+        return labels.averaged(self.temperature, balance)
 
 
 def _continued(values: Array, cells: Cells, fine: Cells) -> Array:

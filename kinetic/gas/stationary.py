@@ -17,7 +17,9 @@ independent. The noise drives the centre of mass as well, which collisions leave
     W_v^2 = (1 - 1/L) T + 1/L,
 
 and the same for the displacements on linear springs. For e > 1 velocities have heavy tails, which a
-closure of moments does not know: with a damping above 0.6 sqrt(k m) it is too cold at the ends.
+closure of moments does not know. On linear springs without a gap and walls T is therefore that of
+points in phase space (:mod:`.driven`). Other chains with e > 1 have the closure, which is too cold
+at the ends if the damping is above 0.6 sqrt(k m).
 """
 
 from __future__ import annotations
@@ -51,7 +53,8 @@ def steady_state(chain: Chain, *, correlations: bool = True) -> xr.Dataset:
         At restitution 1 ``equilibrium`` is exact.
     correlations
         False: the mean field, in which colliding rods are independent. It is the theory of first
-        order in 1 - e, and the only one for e > 1.
+        order in 1 - e, and the only one for e > 1. There it is solved up to 0.85 of the critical
+        size if the damping is 3 sqrt(k m), and further if it is weaker.
 
     Returns
     -------
@@ -69,7 +72,8 @@ def steady_state(chain: Chain, *, correlations: bool = True) -> xr.Dataset:
         centre of mass; up to 1000 rods over (particle, separation) the ``velocity_covariance``
         <v_i v_{i+r}>, NaN beyond the chain.
 
-        ``attrs``: ``residual``, the largest disagreement of mean state and fluctuations;
+        ``attrs``: ``residual``, the largest disagreement of mean state and fluctuations, and
+        for e > 1 the share of points that the grid loses in a time m/gamma;
         ``iterations``; and the errors of the theory in simulations of chains like this one, NaN
         where none was measured: ``velocity_width_model_error`` and ``border_model_error``,
         relative, of W_v of the particles 3 to L - 2 and of the first and the last;

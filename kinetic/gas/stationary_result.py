@@ -165,19 +165,28 @@ def _shapes(chain: Chain, length: float, rods: Rods) -> RodPlaces:
 
 def _heat_flux(chain: Chain, found: Steady, label: Array) -> Array:
     """Return (m/2) n q at labels."""
-    medium, cells, mean = found.problem.medium, found.problem.cells, found.mean
-    inner = found.problem.inner
+    if found.labels is not None and found.flux is not None:
+        where, flux = found.labels.fine.centres, found.flux
+    else:
+        where, flux = found.problem.cells.contacts, _conducted(chain, found)
+    W = chain.free_velocity_width
+    places, ends = (np.pad(field, 1) for field in (where, flux))
+    places[-1] = chain.size
+    unit = chain.mass * W**3 / (2 * found.problem.medium.length)
+    return np.asarray(unit * np.interp(label, places, ends))
+
+
+def _conducted(chain: Chain, found: Steady) -> Array:
+    """Return n q of the closure at the contacts of cells."""
+    medium, mean, inner = found.problem.medium, found.mean, found.problem.inner
     T, force = mean.contact_temperature[inner], mean.force[inner]
     n = force / T
     strength = np.ones(T.size)
     if found.fluctuations is not None:
         strength = found.fluctuations.closure.strength(T, chain.restitution)
     rate = 3 * medium.damping + np.maximum(strength * medium.decay * n * np.sqrt(T), 0.0)
-    flux = -3 * n**2 * T / rate * np.diff(mean.temperature) / cells.distances
-    W = chain.free_velocity_width
-    places, ends = (np.pad(field, 1) for field in (cells.contacts, flux))
-    places[-1] = chain.size
-    return chain.mass * W**3 / (2 * medium.length) * np.interp(label, places, ends)
+    slope = np.diff(mean.temperature) / found.problem.cells.distances
+    return np.asarray(-3 * n**2 * T / rate * slope)
 
 
 def _of_pairs(chain: Chain, found: Steady, of: Fluctuations, rods: Rods) -> Variables:

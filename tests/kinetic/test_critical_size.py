@@ -38,7 +38,7 @@ def test_the_error_is_the_distance_from_where_the_steady_state_of_the_gas_ends(s
         hot = steady_state(longest, correlations=False).velocity_width
         assert float(hot.min()) > 2 * chain.free_velocity_width
     else:
-        with pytest.raises(ValueError, match="collisions give more than damping takes"):
+        with pytest.raises(ValueError, match=r"give more than damping takes|too heavy"):
             steady_state(longest, correlations=False)
 
 
