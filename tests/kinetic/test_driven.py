@@ -25,7 +25,7 @@ def test_just_above_1_collisions_add_what_two_rods_add_at_rest():
     assert np.mean(widths(L, e, Gamma) ** 2) - 1 == pytest.approx(gained, rel=1e-3)
 
 
-# W_v of the rods 1, 10 and 50 of 100 with the drag lambda L, from finite elements of 40 x 80 cells
+# W_v of the rods 1, 10 and 50 of 100 with the drag lambda L, from finite elements of 50 x 100 cells
 # in y and v. The restitutions are those with ln((1 + e)/2) L = drag.
 STORED = [
     (1.0, 0.9424777960769348, [1.590081, 1.580965, 1.621495]),
