@@ -164,8 +164,7 @@ BY_DAMPING = Study(
     name="widths-damping",
     title="Velocity widths of flippers for several dampings",
     caption="Damping times velocity width against the normalized particle number, L = 100, e = "
-    "1.05. Lines: the gas. It does not know the heavy tails of the velocities: where they make the "
-    "profile convex, its ends are too cold.",
+    "1.05. Lines: the gas, in which colliding rods are independent.",
     needs=[*chains.all_of(_BY_DAMPING), *_DAMPED.values()],
     claims=_claims_by_damping,
     draw=_draw_by_damping,
@@ -238,9 +237,9 @@ BY_LENGTH = Study(
     number=14,
     name="widths-size",
     title="Velocity widths of flippers for several sizes",
-    caption="W_v against the normalized particle number, e = 1.05, gamma = 4. Lines: the gas. It "
-    "does not know the heavy tails of the velocities: where they make the profile convex, its ends "
-    "are too cold. Longer chains have no steady state: L = 150 diverges.",
+    caption="W_v against the normalized particle number, e = 1.05, gamma = 4. Lines: the gas, "
+    "in which colliding rods are independent. Longer chains have no steady state: L = 150 "
+    "diverges.",
     needs=[*chains.all_of(_BY_LENGTH), *_OF_LENGTH.values(), *_UNSTEADY.values()],
     claims=_claims_by_length,
     draw=_draw_by_length,
