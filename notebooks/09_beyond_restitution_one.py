@@ -366,8 +366,8 @@ assert (abs(inverse - 1 / (share + (1 - share) / (1 - sizes / critical))) < 0.02
 # All points lie close to the straight line. Collisions cannot drive the centre of mass, which keeps
 # its share $E_0/L$, so that they lie a little above it. The gas is right to 0.04.
 #
-# `critical_size` gives $L_c$. For $\gamma = 4$ it is 123 rods, and simulations give $114.7 \pm
-# 0.7$: rods that happen to be close together pass their pushes back and forth.
+# `critical_size` gives $L_c$. For $\gamma = 4$ it is 123 rods, and simulations give $114.6 \pm
+# 0.6$: rods that happen to be close together pass their pushes back and forth.
 # </details>
 #
 # ## 5. A gas in a box
