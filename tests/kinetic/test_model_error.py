@@ -125,13 +125,14 @@ def test_the_errors_of_the_force_balance_are_those_from_the_exact_solution(size,
 
 
 def test_chains_drawn_at_random_keep_to_the_stated_errors():
-    """Three of the errors are above the stated one by more than two standard errors."""
+    """None is above the stated one by more than a standard error; three are above it at all."""
     known, beyond = 0, 0
     for row in rows("docs/tables/stationary_held_out.csv"):
         limits = stated(chain_of_row(row))._asdict()
         for name in filter(row.get, QUANTITIES):
             error, spread = map(float, row[name].split(" of ")[0].split(" ± "))
             known += not np.isnan(limits[name])
-            beyond += error > limits[name] + 2 * spread
+            beyond += error > limits[name]
+            assert not error > limits[name] + spread
     assert known > 240
     assert beyond <= 3
