@@ -106,8 +106,8 @@ notebooks: $(VENV)/installed-notebooks
 	mkdir -p build/notebooks
 	rm -f build/notebooks/$(LESSON)*.ipynb
 	cp -R notebooks/$(LESSON)*.ipynb notebooks/teaching.py notebooks/solutions build/notebooks
-	CRAZYBILLIARDS_LESSONS=strict TQDM_DISABLE=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --nbmake \
-	  --nbmake-timeout=300 --timeout=1800 --overwrite build/notebooks/$(LESSON)*.ipynb
+	CRAZYBILLIARDS_LESSONS=strict TQDM_DISABLE=1 OPENBLAS_NUM_THREADS=1 \
+	  $(BIN)/python notebooks/execute.py build/notebooks/$(LESSON)*.ipynb
 	test "$(LESSON)" != "$(ALL_LESSONS)" || touch build/notebooks/executed
 
 build/notebooks/executed: $(wildcard notebooks/*.ipynb notebooks/solutions/*.py) notebooks/teaching.py
