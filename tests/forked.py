@@ -1,17 +1,22 @@
 """Programs as forks of this process, because imports would take most of their time."""
 
+import faulthandler
 import multiprocessing
 import os
 import signal
 import sys
+import time
 import warnings
-from contextlib import nullcontext
+from contextlib import suppress
 from tempfile import TemporaryFile
 from typing import NamedTuple
 
+import psutil
+
 from crazybilliards.apps.commands.line import main
 
-PATIENCE = 200  # seconds until a program that hangs is ended
+PATIENCE = 200  # seconds until a program that hangs is ended, with the stacks of its threads
+GONE = (psutil.STATUS_ZOMBIE, psutil.STATUS_DEAD)
 
 
 class Ended(NamedTuple):
@@ -22,24 +27,59 @@ class Ended(NamedTuple):
     stderr: str
 
 
-def forked(job, *, closed=(), stdout=None):
+def forked(job, *, closed=()):
     """Do a job in a fork, which ends as a program does; ``closed``: numbers of its streams."""
-    with (
-        TemporaryFile("w+") if stdout is None else nullcontext(stdout) as output,
-        TemporaryFile("w+") as errors,
-        warnings.catch_warnings(),
-    ):
+    with TemporaryFile("w+") as output, TemporaryFile("w+") as errors:
+        status = end(begin(job, output, errors, closed))
+        for stream in (output, errors):
+            stream.seek(0)
+        return Ended(status, output.read(), errors.read())
+
+
+def begin(job, output, errors, closed=()):
+    """Fork a process that does a job, in a process group of its own; return its number.
+
+    The job may become another program by ``os.execv``.
+    """
+    # Ctrl-C may come at once, and waits for what catches it.
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # threads: those of linear algebra
         child = os.fork()
-        if child == 0:
-            _become_a_program(output.fileno(), errors.fileno(), closed)
-            _end_as_a_program(job)
-        _, status = os.waitpid(child, 0)
-        said = []
-        for stream in (output, errors):
-            readable = stream.seekable() and stream is not stdout
-            said.append(stream.read() if readable and stream.seek(0) == 0 else "")
-    return Ended(os.waitstatus_to_exitcode(status), *said)
+    if child == 0:
+        _end_as_a_program(job, output.fileno(), errors.fileno(), closed)
+    with suppress(OSError):  # the child has done that, and gone on
+        os.setpgid(child, child)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    return child
+
+
+def end(child, number=None, group=False):
+    """Send it a signal; wait until it and all its workers are gone; return its exit status."""
+    if number is not None:
+        (os.killpg if group else os.kill)(child, number)
+    _, status = os.waitpid(child, 0)
+    until(lambda: not members(child))
+    return os.waitstatus_to_exitcode(status)
+
+
+def members(group):
+    """Return the living processes of a process group."""
+    found = []
+    for process in psutil.process_iter():
+        with suppress(ProcessLookupError, psutil.NoSuchProcess):  # it has just ended
+            if os.getpgid(process.pid) == group and process.status() not in GONE:
+                found.append(process)
+    return found
+
+
+def until(condition):
+    """Wait for a condition to be true, for as long as a busy machine may take."""
+    deadline = time.monotonic() + PATIENCE
+    while not (found := condition()):
+        assert time.monotonic() < deadline, "waited for too long"
+        time.sleep(0.002)
+    return found
 
 
 def _become_a_program(output, errors, closed):
@@ -50,6 +90,7 @@ def _become_a_program(output, errors, closed):
     signal.signal(signal.SIGINT, signal.default_int_handler)
     for number, descriptor in ((1, output), (2, errors)):
         os.dup2(descriptor, number)
+    faulthandler.register(signal.SIGALRM, file=2, chain=True)
     for number in closed:
         os.close(number)
     sys.stdin, sys.stdout, sys.stderr = (
@@ -58,9 +99,12 @@ def _become_a_program(output, errors, closed):
     )
 
 
-def _end_as_a_program(job):
+def _end_as_a_program(job, *streams):
     status = 1
     try:
+        os.setpgid(0, 0)
+        _become_a_program(*streams)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         job()
         status = 0
     except SystemExit as error:

@@ -7,40 +7,33 @@ the end the files are those of an undisturbed run and no others.
 """
 
 import os
+import re
 import signal
 import sys
 import threading
 import time
-from collections.abc import Callable
-from typing import NamedTuple
 
 import matplotlib as mpl
 import numpy as np
 import pytest
-from killed import begin, contents, end, members, require_same, until
+from forked import begin, command, end, members, until
 from small_sweeps import missing_cases
 from tqdm import tqdm
 
-from crazybilliards.apps.commands.line import main
 from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.sweeps import read_sweep
 from crazybilliards.model import Chain, load, save
-from crazybilliards.model.storage import write_sealed
+from crazybilliards.model.storage import read_sealed
 from crazybilliards.particles import simulate
 from crazybilliards.reproduction.figures import elastic
 
 pytestmark = [
-    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="forks, reads /proc"),
+    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="forks many threads"),
     pytest.mark.compiled,
 ]
 torture = pytest.mark.torture
 
-MAIN = """
-import faulthandler, signal
-faulthandler.register(signal.SIGUSR1)
-from crazybilliards.apps.commands.line import main
-main()
-"""
+MAIN = "from crazybilliards.apps.commands.line import main; main()"
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 GRID = """
 [grid]
@@ -58,32 +51,60 @@ size = 20
 [simulate]
 duration = 5e4
 """
+ALL = {"observe": ("widths", "density", "energy", "velocities"), "replicas": 3}
+INELASTIC = Chain(size=40, restitution=0.9, gap=0.1)
+ELASTIC = INELASTIC.replace(restitution=1.0)
 
 
-def simulated(function, chain, **settings):
+def simulated(chain, duration):
     """Return a job that writes its checkpoint as often as possible."""
 
     def job(folder):
         state = {"checkpoint": folder / "state", "checkpoint_interval": 0}
-        run = function(chain, progress=False, **settings, **state)
+        run = simulate(chain, duration=duration, progress=False, **ALL, **state)
         if run.attrs["status"] == "completed":
             save(run, folder / "run.nc")
 
     return job
 
 
-def command(*arguments, real=False):
+def written(folder):
+    """Write a result over itself, to a slow disk."""
+    run = simulate(Chain(size=30), duration=200, progress=False)
+    os.fsync = lambda descriptor: time.sleep(0.02)
+    for _ in range(30):
+        save(run, folder / "run.nc")
+
+
+def called(line, real=False):
     """Return a job that is a command, in the forked process or as a program of its own."""
 
     def job(folder):
         os.chdir(folder.parent)
-        own = [*arguments, "--output", str(folder)]
+        own = [*line.split(), "--output", str(folder)]
         if real:
             os.execv(sys.executable, [sys.executable, "-c", MAIN, *own])
-        sys.argv = ["crazybilliards", *own]
-        main()
+        command(*own)()
 
     return job
+
+
+SWEEP, REPRODUCE = "sweep grid.toml --processes 2", "reproduce 1,16 --processes 2"
+COMPARE = "compare --size 10 --duration 1000 --amplitude 1,2,5 --threads 1"
+# A job, how often it is killed in a row, how many rows there are, and which run they are part of.
+JOBS = {
+    "simulate": (simulated(ELASTIC, 2e4), 3, 1, pytest.mark.validate),
+    "simulate, e < 1": (simulated(INELASTIC, 3000.0), 3, 1, ()),
+    "simulate, often": (simulated(INELASTIC, 3000.0), 10, 10, torture),
+    "save": (written, 10, 10, torture),
+    "sweep": (called(SWEEP), 10, 10, torture),
+    "reproduce": (called(REPRODUCE), 10, 10, torture),
+    "compare": (called(COMPARE), 10, 10, torture),
+    # Start-up and workers included.
+    "real sweep": (called(SWEEP, real=True), 3, 1, torture),
+    "real reproduce": (called(REPRODUCE, real=True), 3, 1, torture),
+    "real compare": (called(COMPARE, real=True), 3, 1, torture),
+}
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -101,123 +122,108 @@ def prepared():
         yield
 
 
-class Killed(NamedTuple):
-    """A job, and how often it is killed: in a row, one after another, and until when."""
+def contents(folder):
+    """Read every file that counts as a result; raises if one is torn."""
+    found = {}
+    for path in sorted(folder.rglob("*")):
+        name = str(path.relative_to(folder))
+        if path.is_dir() or (path.name[0] == "." and path.name.endswith((".part", ".lock"))):
+            continue
+        if path.suffix == ".nc":
+            found[name] = load(path)
+        else:
+            content = read_sealed(path) if name == "state" else path.read_bytes()
+            found[name] = re.sub(rb"\d+ s of computing", b"", content)
+    return found
 
-    job: Callable
-    kills: int
-    sequences: int = 1
 
-    def latest(self, duration):
-        """Return the last moment of a kill: together they may last as long as three runs.
+def require_same(found, undisturbed):
+    """Compare whatever there is with an undisturbed run; what is interrupted says so."""
+    for name, content in found.items():
+        if "-interrupted" in name:
+            assert name.endswith(".png") or content.attrs["status"] == "interrupted"
+        elif name.endswith(".nc"):
+            assert content.identical(undisturbed[name])
+        elif name != "state":
+            assert content == undisturbed[name], name
 
-        What a run has done helps the next ones.
-        """
-        return duration * min(3 / self.kills, 1)
 
+class Place:
+    """A folder with a grid, its results and what was said."""
 
-ALL = {"observe": ("widths", "density", "energy", "velocities")}
-INELASTIC = Chain(size=40, restitution=0.9, gap=0.1)
-COMPARE = ("compare", "--size", "10", "--duration", "1000", "--amplitude", "1,2,5")
-RUN = simulated(simulate, INELASTIC, duration=3000.0, replicas=3, **ALL)
-ELASTIC = simulated(simulate, INELASTIC.replace(restitution=1.0), duration=2e4, replicas=3, **ALL)
-JOBS = {
-    "simulate": (Killed(ELASTIC, 3), pytest.mark.validate),
-    "simulate, e < 1": (Killed(RUN, 3), ()),
-    "simulate, often": (Killed(RUN, 10, 10), torture),
-    "sweep": (Killed(command("sweep", "grid.toml", "--processes", "2"), 10, 10), torture),
-    "reproduce": (Killed(command("reproduce", "1,16", "--processes", "2"), 10, 10), torture),
-    "compare": (Killed(command(*COMPARE, "--threads", "1"), 10, 10), torture),
-    # Start-up and workers included.
-    "real sweep": (
-        Killed(command("sweep", "grid.toml", "--processes", "2", real=True), 3),
-        torture,
-    ),
-    "real reproduce": (
-        Killed(command("reproduce", "16", "--processes", "2", real=True), 3),
-        torture,
-    ),
-    "real compare": (Killed(command(*COMPARE, real=True), 3), torture),
-}
+    def __init__(self, folder, grid):
+        self.results, self.log = folder / "results", folder / "log.txt"
+        self.results.mkdir(parents=True)
+        (folder / "grid.toml").write_text(grid)
+
+    def begin(self, job):
+        with self.log.open("a") as log:
+            return begin(lambda: job(self.results), log, log)
 
 
 @pytest.mark.parametrize(
-    ("name", "killed"),
-    [pytest.param(name, each, marks=marks, id=name) for name, (each, marks) in JOBS.items()],
+    ("name", "job", "kills", "rows"),
+    [pytest.param(name, *how, marks=marks, id=name) for name, (*how, marks) in JOBS.items()],
 )
 def test_killed_at_random_moments_it_ends_with_the_bits_of_an_undisturbed_run(
-    name, killed, tmp_path
+    name, job, kills, rows, tmp_path
 ):
-    def place(part):
-        (tmp_path / part).mkdir()
-        (tmp_path / part / "grid.toml").write_text(GRID)
-        return tmp_path / part / "results"
-
-    start, clean = time.monotonic(), place("undisturbed")
-    assert end(begin(killed.job, clean)) == 0
+    start, clean = time.monotonic(), Place(tmp_path / "undisturbed", GRID)
+    assert end(clean.begin(job)) == 0
     duration = time.monotonic() - start
-    undisturbed, generator, running = contents(clean), np.random.default_rng(len(name)), 0
-    for sequence in range(killed.sequences):
-        folder = place(str(sequence))
-        for number in range(killed.kills):
-            child = begin(killed.job, folder)
-            time.sleep(generator.uniform(0, killed.latest(duration)))
+    latest = duration * min(3 / kills, 1)  # what a run has done helps the next ones
+    undisturbed = contents(clean.results)
+    generator, running = np.random.default_rng(len(name)), 0
+    for row in range(rows):
+        place = Place(tmp_path / str(row), GRID)
+        for number in range(kills):
+            child = place.begin(job)
+            time.sleep(generator.uniform(0, latest))
             how = SIGNALS[number % 3]
             running += bool(members(child))
             end(child, how, group=how == signal.SIGINT or generator.random() < 0.5)
-            require_same(contents(folder), undisturbed)
-        assert end(begin(killed.job, folder)) == 0
-        require_same(contents(folder), undisturbed)
+            require_same(contents(place.results), undisturbed)
+        assert end(place.begin(job)) == 0
+        require_same(contents(place.results), undisturbed)
         left = ("-interrupted.", ".part")
-        final = {path.name for path in folder.rglob("*") if not any(map(path.name.count, left))}
-        assert final == {path.name for path in clean.rglob("*")}
+        files = {path.name for path in place.results.rglob("*")}
+        final = {name for name in files if not any(map(name.count, left))}
+        assert final == {path.name for path in clean.results.rglob("*")}
         # Imports that Ctrl-C ends say where.
-        if not name.startswith("real"):
-            assert "Traceback" not in (folder.parent / "log.txt").read_text()
-    every = killed.sequences * killed.kills
+        log = place.log.read_text()
+        assert name.startswith("real") or log.count("Traceback") == log.count("\nKeyboardInterrupt")
+    every = rows * kills
     print(f"{name}: {running} of {every} kills found it running {duration:.1f} s")
     assert every < 10 or running >= every / 3  # a few may all come too late
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGKILL"])
-def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(name, tmp_path):
-    number = getattr(signal, name)
-    (tmp_path / "grid.toml").write_text(LONG_GRID)
-    folder = tmp_path / "results"
-    child = begin(command("sweep", "grid.toml", "--processes", "2", real=True), folder)
-    until(lambda: list(folder.glob("*.nc")))
+SCRIPT = """
+from crazybilliards.comparison.sweeps import process_pool, read_sweep, run_cases
+with process_pool(2) as pool:
+    run_cases(read_sweep("grid.toml"), "results", pool)
+"""
+
+
+def script(folder):
+    """Sweep by a script, which needs no guard of its main part."""
+    os.chdir(folder.parent)
+    (folder.parent / "script.py").write_text(SCRIPT)
+    os.execv(sys.executable, [sys.executable, "script.py"])
+
+
+ENDED = {signal.SIGINT: called("sweep grid.toml --processes 1", real=True), signal.SIGKILL: script}
+
+
+@pytest.mark.parametrize("number", ENDED, ids=lambda number: number.name)
+def test_a_sweep_that_is_killed_keeps_what_is_finished_and_leaves_no_workers(number, tmp_path):
+    place = Place(tmp_path, LONG_GRID)
+    child = place.begin(ENDED[number])
+    until(lambda: list(place.results.glob("*.nc")))
     assert len(members(child)) > 1
-    ended = {"SIGINT": -number, "SIGTERM": 128 + number, "SIGKILL": -number}
-    assert end(child, number) == ended[name]
-    said = (tmp_path / "log.txt").read_text()
-    assert said.count("interrupted") == (name != "SIGKILL")
-    assert name == "SIGKILL" or not {"Traceback", "leaked"} & {*said.split()}
+    assert end(child, number) == -number
+    said = place.log.read_text()
+    assert said.count("interrupted") == (number != signal.SIGKILL)
+    assert number == signal.SIGKILL or not {"Traceback", "leaked"} & {*said.split()}
     cases = read_sweep(tmp_path / "grid.toml").cases()
-    assert 0 < len(missing_cases(cases, folder)) < len(cases)
-    assert load_sweep(folder).status.size >= 1
-
-
-@torture
-def test_killed_while_writing_it_leaves_the_old_file_or_the_new_one(tmp_path):
-    results = [simulate(Chain(size=size), duration=200, progress=False) for size in (3, 30)]
-    stored = [bytes(each.to_netcdf(engine="h5netcdf")) for each in results]
-
-    def written(folder):
-        """Write one of two results over the other for ever, to a slow disk."""
-        os.fsync = lambda descriptor: time.sleep(0.02)
-        while True:
-            for content in stored:
-                write_sealed(folder / "run.nc", content)
-
-    folder, generator = tmp_path / "results", np.random.default_rng(5)
-    for _ in range(100):
-        child = begin(written, folder)
-        time.sleep(generator.uniform(0, 0.3))
-        end(child, signal.SIGKILL)
-        if (folder / "run.nc").exists():
-            assert any(load(folder / "run.nc").identical(each) for each in results)
-    assert "Traceback" not in (tmp_path / "log.txt").read_text()
-    names = {path.name for path in folder.iterdir()} - {"run.nc"}
-    print(f"{len(names)} of 100 kills left an unfinished file")
-    assert names
-    assert all(name.startswith(".run.nc.") and name.endswith(".part") for name in names)
+    assert 0 < len(missing_cases(cases, place.results)) < len(cases)
+    assert load_sweep(place.results).status.size >= 1

@@ -62,6 +62,8 @@ cb.simulate(chain, particles=(3, 2)) | particles must ascend
 cb.simulate(chain, replicas=10**12) | would take...GiB of memory
 cb.simulate(chain, start=snapshots) | start is over time; choose one time...isel(time=-1)
 cb.simulate(chain, start=start.isel(replica=0)) | start: position must be over replica and particle
+cb.simulate(chain, start=run) | start must be a result with position and velocity
+cb.simulate(chain.replace(radius=2), start=start) | start must hold rods in order
 cb.simulate(six, start=start) | start has 5 rods, the chain 6
 cb.simulate(chain, start=start, replicas=3) | start is for replicas=1, got replicas=3
 cb.simulate(chain, start=start * np.nan) | finite
@@ -88,18 +90,39 @@ THEORIES = """
 cb.equilibrium_states(chain.replace(restitution=0.8), 4) | chain.replace(restitution=1)
 cb.equilibrium(walled.replace(wall_restitution=0.5)) | elastic walls only
 cb.hydrodynamics(cb.Chain(size=20), crystal, 60) | spikes of a crystal...force_balance
+cb.hydrodynamics(six, cb.displaced(chain, 1), 1) | must add up to the chain's 6 rods, got 5
+cb.hydrodynamics(six, start, 1) | the result has no 'density'
+cb.force_balance(six, displacement=exact) | the result has 5 particles, the chain 6
+cb.force_balance(six, velocity_variance=exact) | the result has 5 particles, the chain 6
 cb.hydrodynamics(chain, foreign, 1) | start: the density must add up to the chain's 5 rods
 cb.force_balance(chain, displacement=3) | displacement takes a table (x, values)...got 3
 cb.compare_relaxation(chain, every=1e3) | every must be at most
 cb.compare_relaxation(chain, "wave") | a gas of points needs a box=..., and gap=0 or stiffness=0
 cb.compare_relaxation(walled, "wave", 2) | height must be from -1 to 1, got 2
 cb.compare_relaxation(walled, "gathered", 2) | share must be at most 1, got 2
+cb.compare_relaxation(walled.replace(restitution=0.9), "gathered", 0.5) | elastic collisions only
 cb.compare_relaxation(walled, "confined", 2) | confined needs a box, and by <= 1, got by=2
+cb.compare(chain, {"amplitude": [1, 0]}) | no steady state
+cb.compare(cb.Chain(damping=0), {"amplitude": [1]}) | no steady state
+cb.compare(chain, {"restitution": [0.9, 0.9 + 1e-8]}) | must differ in their first six digits
 cb.compare(chain, 3) | over must be one parameter of the chain and its values...got 3
 cb.compare(chain, {"restitution": "0.5"}) | over: restitution must be a list of values, got '0.5'
 fits.fit_growth([1, 2, 3], [1, 2]) | time, energy must have
 fits.fit_growth([1, 2, np.nan], [1, 2, 3]) | time must be finite, got [1, 2, nan]
+fits.fit_growth([1, 1, 1], [1, 2, 3]) | identical
+fits.fit_growth([0, 1, 2], [1, -1, 1]) | at least 3 energies
+fits.fit_singularity([0, 1], [1, 2]) | at least 5 energies
+fits.fit_singularity([1] * 5, [1, 2, 3, 4, 5]) | finite
+fits.fit_scaling([2, 2], [1, 3], [1, 1]) | no power law fits
+fits.fit_exponential([0, 0.5, 1], [1, 2, 3], [0, 1, 1]) | positive errors
+fits.tail_length([1], [1], 0.5) | must ascend
+fits.tail_length([1, 3, 2], [1, 1, 1], 0.5) | must ascend
 fits.fit_avalanches([4, 2, 1], smallest=10**400) | at least two of the sizes 1000
+fits.fit_avalanches([5, 3], smallest=0) | smallest
+fits.fit_avalanches([5, 3], smallest=2, largest=1) | largest
+fits.fit_avalanches([5, 3, 1], smallest=7) | at least two of the sizes 7 to 3
+fits.fit_avalanches([1, 2, 1, 0], smallest=3) | at least two of the sizes 3 to 4
+fits.fit_avalanches([5, -3, 2]) | none below 0
 """
 
 PICTURES = """
@@ -109,6 +132,10 @@ cb.overlay({"a": run.expand_dims(size=[1, 2])}) | density is over (size, x)
 cb.overlay({"run": run}, style={"rum": {}}) | style: ...got 'rum'; did you mean 'run'?
 cb.overlay(run) | overlay takes results by their labels...got a Dataset
 cb.film(exact) | run has no snapshots in time, which simulate(chain, observe='snapshots') records
+cb.film(snapshots.isel(particle=0)) | no snapshots in time
+cb.film(snapshots.drop_vars("velocity")) | no snapshots in time
+cb.film(snapshots * np.nan) | no snapshot in which all velocities are known
+cb.film(chain, duration=-1) | duration must be positive
 cb.film(chain, "rods.avi") | path must end in .mp4, .gif or .html, got rods.avi
 cb.film(snapshots, duration=5) | duration is that of a chain to simulate
 """

@@ -95,14 +95,6 @@ def test_the_error_of_a_convolved_density_is_that_of_its_blocks():
     assert convolved.density_error.max() < run.density_error.max()
 
 
-def test_what_holds_no_density_is_refused():
-    run = simulate(Chain(size=3), duration=100, observe="widths", progress=False)
-    with pytest.raises(ValueError, match="no 'density'; it has mean_displacement"):
-        coverage_density(run)
-    with pytest.raises(ValueError, match="names no chain"):
-        smooth(xr.Dataset({"density": ("x", np.ones(3))}))
-
-
 def test_nothing_is_smoothed_twice():
     once = smooth(equilibrium(Chain(size=5)))
     assert smooth(once) is once

@@ -50,13 +50,6 @@ def test_a_transposed_density_deviates_as_before():
     assert deviation(one.transpose("x", ...), other) == deviation(one, other)
 
 
-def test_spikes_are_compared_only_when_asked_for():
-    exact = equilibrium(Chain(size=10))
-    with pytest.raises(ValueError, match=r"not smoothed: .* or raw=True"):
-        deviation(exact, exact)
-    assert deviation(exact, exact, raw=True).maximum == 0
-
-
 def test_deviation_in_both_units():
     chain = Chain(size=10)
     d = deviation(flat(chain, 0.31, 4, error=0.003), flat(chain, 0.3, 4, error=0.004))
@@ -75,14 +68,6 @@ def test_outside_a_grid_the_density_is_zero():
     assert d.maximum_in_errors is None
 
 
-def test_deviation_refuses_what_it_cannot_align():
-    chain = Chain(size=10)
-    with pytest.raises(ValueError, match="different spacing"):
-        deviation(flat(chain, 0.3, 4), flat(chain, 0.3, 4, spacing=0.4))
-    with pytest.raises(ValueError, match="no 'density'"):
-        deviation(flat(chain, 0.3, 4).drop_vars("density"), flat(chain, 0.3, 4))
-
-
 def test_densities_over_other_times_are_not_compared():
     chain = Chain(size=10)
     times = [flat(chain, 0.3, 4).assign_coords(time=t) for t in (0.0, 1.0, 2.0)]
@@ -91,12 +76,16 @@ def test_densities_over_other_times_are_not_compared():
     for reference in (other, times[0]):
         with pytest.raises(ValueError, match="choose one of each"):
             deviation(one, reference)
+    with pytest.raises(ValueError, match="different spacing"):
+        deviation(times[0], flat(chain, 0.3, 4, spacing=0.4))
 
 
 def test_a_vanishing_density_deviates_by_nothing():
     chain = Chain(size=10)
     d = deviation(flat(chain, 0.0, 4), flat(chain, 0.0, 4))
     assert (d.maximum, d.rms, d.integrated) == (0, 0, 0)
+    exact = equilibrium(chain)
+    assert deviation(exact, exact, raw=True).maximum == 0
 
 
 def test_the_fit_recovers_an_arctanh():
@@ -123,9 +112,7 @@ def test_the_fit_of_the_reference_chain():
     assert fit.misfit < 0.05 * chain.thermal_length
 
 
-def test_chains_that_no_arctanh_fits_are_refused():
-    with pytest.raises(ValueError, match="at least 3 rods"):
-        fit_arctanh(equilibrium(Chain(size=2)))
+def test_a_chain_that_is_pulled_inwards_has_no_arctanh():
     inward = equilibrium(Chain(size=5))
     with pytest.raises(ValueError, match="not displaced outward"):
         fit_arctanh(inward.assign(mean_displacement=-0.1 * inward.mean_displacement))

@@ -5,6 +5,7 @@ import re
 import signal
 from functools import wraps
 from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -52,17 +53,13 @@ def test_the_start_page_has_the_numbers_that_make_run_prints():
     assert f"by at most {largest:.1f} standard errors in any bin" in page
 
 
-def test_simulation_and_exact_density_agree(tree):
+def test_simulation_and_exact_density_agree_and_every_velocity_width_is_the_free_one(tree):
     """Within 1 % of close packing, and within 5 standard errors everywhere."""
     for by_theory in all_deviations(tree).values():
         exact = by_theory["equilibrium"].density
         assert exact.maximum < 0.01
         assert exact.maximum_in_errors < 5
         assert exact.rms_in_errors < 1.5
-
-
-def test_every_velocity_width_is_the_free_one(tree):
-    for by_theory in all_deviations(tree).values():
         assert by_theory["force_balance_arctanh"].velocity_width is None
         for name in WITHOUT_FIT:
             assert by_theory[name].velocity_width.largest_in_errors < 5
@@ -106,11 +103,9 @@ def test_the_tree_holds_everything_with_its_chain(tree):
     assert list(tree.children) == [f"amplitude_{a}" for a in (1, 3, 10, 30)]
     for group in tree.children.values():
         assert set(group.children) == {"simulation", *ELASTIC}
-        chains = {chain_of(each.to_dataset()) for each in group.children.values()}
-        assert len(chains) == 1
+        assert len({chain_of(each.to_dataset()) for each in group.children.values()}) == 1
     arctanh = tree["amplitude_10/force_balance_arctanh"]
-    assert arctanh.attrs["scale"] > 0
-    assert arctanh.attrs["steepness_error"] > 0
+    assert min(arctanh.attrs["scale"], arctanh.attrs["steepness_error"]) > 0
 
 
 def test_rods_that_hardly_touch_go_without_the_arctanh_but_lose_nothing():
@@ -138,12 +133,6 @@ def test_a_gas_in_a_box_goes_without_the_fit_and_has_its_pressure(mass_ratio):
         figure = draw(tree)
         figure.canvas.draw()
         assert figure.get_axes()[0].get_title(loc="left") == "$A = 1$"
-
-
-@pytest.mark.parametrize("chain", [Chain(), Chain(damping=0)])
-def test_chains_without_a_steady_state_are_refused(chain):
-    with pytest.raises(ValueError, match="no steady state"):
-        compare(chain, {"amplitude": [1, 0]}, progress=False)
 
 
 @pytest.fixture
@@ -175,14 +164,13 @@ def test_what_the_folder_holds_is_not_computed_again(computed, tmp_path):
 
 
 @pytest.mark.posix
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_keeps_what_was_computed(number, monkeypatch, tmp_path):
+def test_a_signal_keeps_what_was_computed(monkeypatch, tmp_path):
     """In a command. A program that calls this has the handlers that it sets."""
     write = running.write_sealed
 
     def stop(path, content):
         write(path, content)
-        os.kill(os.getpid(), number)
+        os.kill(os.getpid(), signal.SIGTERM)
 
     how = {"folder": tmp_path, "progress": False, "duration": 500}
     with monkeypatch.context() as patch, terminated_like_interrupted():
@@ -197,10 +185,7 @@ def test_a_signal_keeps_what_was_computed(number, monkeypatch, tmp_path):
 
 
 def test_ctrl_c_before_anything_is_computed_is_ctrl_c(monkeypatch):
-    def stop(*arguments, **settings):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(grid, "run_cases", stop)
+    monkeypatch.setattr(grid, "run_cases", Mock(side_effect=KeyboardInterrupt))
     with pytest.raises(KeyboardInterrupt):
         compare(Chain(size=5), {"amplitude": [1]}, duration=500, progress=False)
 

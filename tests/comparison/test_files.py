@@ -16,7 +16,6 @@ import xarray as xr
 
 from crazybilliards.comparison.sweeps import load_sweep
 from crazybilliards.comparison.sweeps.case import Case, compute
-from crazybilliards.kinetic import displaced, force_balance, hydrodynamics
 from crazybilliards.model import Chain, chain_of, load, save
 from crazybilliards.model.storage import load_attributes, write_sealed
 from crazybilliards.particles import simulate
@@ -197,21 +196,6 @@ def test_a_checkpoint_of_another_call_is_refused_and_kept(changed, files):
     with pytest.raises(ValueError, match=f"another call, which differs in .*{name}.*; remove"):
         simulate(chain, checkpoint=files["checkpoint"], **RUN | changed)
     assert files["checkpoint"].read_bytes() == before
-
-
-def test_a_result_of_another_chain_is_refused_where_it_would_be_used():
-    few, many = simulate(CHAIN, **RUN), Chain(size=4)
-    start = given_start(CHAIN, CHAIN.anchors)
-    calls = [
-        lambda: simulate(CHAIN, start=few, **RUN),
-        lambda: simulate(CHAIN.replace(radius=2.0), start=start, **RUN),
-        lambda: force_balance(many, displacement=few),
-        lambda: force_balance(many, velocity_variance=few),
-        lambda: hydrodynamics(many, displaced(CHAIN, 1.0), 1.0, progress=False),
-        lambda: hydrodynamics(many, start, 1.0, progress=False),
-    ]
-    for call in calls:
-        assert what_is_wrong(lambda _, call=call: call(), None)
 
 
 def test_a_result_names_its_chain_or_is_refused(strangers):

@@ -47,21 +47,6 @@ def test_an_exponential_distribution_is_seen_not_to_be_a_power_law():
     assert fit.distance > 30 / fit.count**0.5
 
 
-@pytest.mark.parametrize(
-    ("counts", "options", "message"),
-    [
-        ([5, 3], {"smallest": 0}, "smallest"),
-        ([5, 3], {"smallest": 2, "largest": 1}, "largest"),
-        ([5, 3, 1], {"smallest": 7}, "at least two of the sizes 7 to 3"),
-        ([1, 2, 1, 0], {"smallest": 3}, "at least two of the sizes 3 to 4"),
-        ([5, -3, 2], {}, "none below 0"),
-    ],
-)
-def test_avalanches_that_cannot_be_fitted(counts, options, message):
-    with pytest.raises(ValueError, match=message):
-        fit_avalanches(counts, **options)
-
-
 def test_scaling_exponents_are_unbiased_and_their_errors_right():
     generator = np.random.default_rng(2)
     x = np.geomspace(10, 1e4, 8)
@@ -111,26 +96,6 @@ def test_exponential_growth_is_no_singularity():
         fit_singularity(t, np.exp(t))
     fit = fit_growth(t, 2 * np.exp(0.7 * t))
     assert (fit.rate, fit.scale) == pytest.approx((0.7, 2.0))
-    with pytest.raises(ValueError, match="at least 3 energies"):
-        fit_growth([0, 1, 2], [1, -1, 1])
-    with pytest.raises(ValueError, match="at least 5 energies"):
-        fit_singularity([0, 1], [1, 2])
-
-
-@pytest.mark.parametrize(
-    ("fit", "message"),
-    [
-        (lambda: fit_growth([1, 1, 1], [1, 2, 3]), "identical"),
-        (lambda: fit_singularity([1] * 5, [1, 2, 3, 4, 5]), "finite"),
-        (lambda: fit_scaling([2, 2], [1, 3], [1, 1]), "no power law fits"),
-        (lambda: fit_exponential([0, 0.5, 1], [1, 2, 3], [0, 1, 1]), "positive errors"),
-        (lambda: tail_length([1], [1], 0.5), "must ascend"),
-        (lambda: tail_length([1, 3, 2], [1, 1, 1], 0.5), "must ascend"),
-    ],
-)
-def test_points_that_leave_a_fit_open_are_refused(fit, message):
-    with pytest.raises(ValueError, match=message):
-        fit()
 
 
 def test_points_of_any_kind_are_fitted_or_refused_without_a_numerical_warning():
@@ -189,8 +154,7 @@ def power_laws(size, scale, nu, c):
     return scale * ((i - c) ** nu + (size + 1 - c - i) ** nu)
 
 
-@pytest.mark.parametrize("size", [20, 60, 300])
-@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e4])
+@pytest.mark.parametrize(("size", "unit"), [(20, 1e-3), (300, 1e4)])
 @pytest.mark.parametrize(("nu", "c"), [(-0.46, -0.5), (-0.46, 0.7), (-1.5, -4.0), (-0.1, 0.0)])
 def test_two_power_laws_are_found_exactly(size, unit, nu, c):
     width = power_laws(size, 0.3 * unit, nu, c)

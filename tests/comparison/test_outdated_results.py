@@ -1,21 +1,19 @@
 """Results of other source code are computed anew, and new parameters leave old results valid."""
 
 import json
-import os
 import shutil
-import sys
 import warnings
 from concurrent.futures import Executor
 
 import pytest
-from installation import ROOT, run
 from small_sweeps import missing_cases
 
 from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.sweeps import Case, case, run_cases
 from crazybilliards.comparison.sweeps.case import compute
 from crazybilliards.kinetic import equilibrium
-from crazybilliards.model import Chain, load, save
+from crazybilliards.model import Chain, fingerprint, load, save
+from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.storage import write_sealed
 
 CASES = [Case("equilibrium", Chain(size=size), {}) for size in (2, 3)]
@@ -84,31 +82,15 @@ def test_a_sweep_of_two_source_codes_is_read_with_a_warning(folder, edited):
     assert "source_fingerprint" not in grid.attrs
 
 
-EDITED = """
-import sys
-from crazybilliards.comparison.sweeps import Sweep, run_cases
-run_cases(Sweep({"size": [2]}, "equilibrium"), sys.argv[1], progress=False)
-"""
-
-
-def test_after_an_edit_of_a_theory_its_sweep_gives_the_new_number(folder, tmp_path_factory):
-    """In a copy of the package, as it would be with a developer."""
-    place = tmp_path_factory.mktemp("edited")
-    package = place / "crazybilliards"
-    for room in ("model", "particles", "kinetic", "comparison"):
-        shutil.copytree(ROOT / room, package / room, ignore=shutil.ignore_patterns("__pycache__"))
-    (package / "__init__.py").touch()
-    theory = package / "kinetic" / "exact" / "gibbs_measure.py"
-    text = theory.read_text()
-    assert text.count('("particle", np.sqrt(') == 1
-    theory.write_text(text.replace('("particle", np.sqrt(', '("particle", 2 * np.sqrt('))
-    # Coverage is that of the package, and not of its copy.
-    unmeasured = {name: value for name, value in os.environ.items() if "COVERAGE" not in name}
-    own = {**unmeasured, "PYTHONPATH": str(place), "PYTHONDONTWRITEBYTECODE": "1"}
-    done = run(sys.executable, "-c", EDITED, folder, cwd=place, env=own)
-    assert "computing it anew" in done.stderr
-    assert missing_cases(CASES, folder) == CASES[:1]
-    assert width(CASES[0], folder) == pytest.approx(2)
+@pytest.mark.parametrize(("name", "changes"), [("gas.py", True), ("page.md", False)])
+def test_an_edit_of_a_room_is_other_source_code(name, changes, tmp_path, monkeypatch):
+    monkeypatch.setattr(fingerprint, "_ROOT", tmp_path)
+    edited = tmp_path / "kinetic" / "gas" / name
+    edited.parent.mkdir(parents=True)
+    edited.write_text("width = 1")
+    before = room_fingerprint.__wrapped__("model", "kinetic")
+    edited.write_text("width = 2")
+    assert (room_fingerprint.__wrapped__("model", "kinetic") != before) is changes
 
 
 # -- parameters -------------------------------------------------------------------------------

@@ -1,19 +1,102 @@
-"""Overlays of what simulation and theory share, over whatever dimension it has."""
+"""Overlays: symbols for simulations, lines for theories; the style of pictures in print."""
 
+import os
 import re
+import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
+from installation import run
 
 from crazybilliards.comparison import overlay
 from crazybilliards.comparison.curves import axis_label
-from crazybilliards.kinetic import steady_state
+from crazybilliards.comparison.drawing import mark_clipped
+from crazybilliards.comparison.layout import house_style, legend_above, panels
+from crazybilliards.kinetic import equilibrium, steady_state
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances
+
+CHAIN = Chain(size=10, amplitude=3)
+
+
+def test_overlay_draws_symbols_with_errors_and_lines():
+    run, exact = simulate(CHAIN, duration=300, progress=False), equilibrium(CHAIN)
+    ax = overlay({"rods": run, "exact": exact}, "velocity_width")
+    [bars], [line] = ax.containers, ax.lines[1:]
+    symbols = bars.lines[0]
+    assert (symbols.get_linestyle(), symbols.get_marker()) == ("None", "o")
+    np.testing.assert_array_equal(symbols.get_xdata(), run.normalized_particle)
+    np.testing.assert_array_equal(symbols.get_ydata(), run.velocity_width)
+    ends = np.array([bar[:, 1] for bar in bars.lines[2][0].get_segments()])
+    np.testing.assert_allclose(np.diff(ends)[:, 0], 2 * run.velocity_width_error)
+    assert (line.get_linestyle(), line.get_marker()) == ("-", "None")
+    np.testing.assert_array_equal(line.get_ydata(), exact.velocity_width)
+    assert ax.get_xlabel() == "normalized particle $i_n$"
+    assert ax.get_ylabel() == "velocity width $W_v$ [$R/t_0$]"
+    assert set(ax.get_legend_handles_labels()[1]) == {"exact", "rods"}
+    ax = overlay({"exact": exact}, "mean_displacement", along="mean_position")
+    assert ax.get_xlabel() == r"mean position $\langle x_i\rangle$ [R]"
+    np.testing.assert_array_equal(ax.lines[0].get_xdata(), exact.mean_position)
+
+
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_of_many_values_all_are_drawn_as_a_line_and_some_as_symbols(scale):
+    """Symbols alone would show waves that do not exist. NaN leaves a gap in the line."""
+    x = np.arange(1.0, 2802.0)
+    values = 0.4 + 0.03 * np.cos(2 * np.pi * x / 25)
+    values[1000] = np.nan
+    units = {"units": "1/R", "long_name": "density"}
+    rods = xr.Dataset(
+        {"density": ("x", values, units), "density_error": ("x", 0 * values + 1e-4, units)},
+        coords={"x": ("x", x, {"units": "R", "long_name": "position x"})},
+        attrs={"source": "simulation"},
+    )
+    _, ax = plt.subplots()
+    ax.set_xscale(scale)
+    overlay({"rods": rods}, ax=ax)
+    [bars] = ax.containers
+    line = bars.lines[0]
+    np.testing.assert_array_equal(line.get_ydata(), values)
+    assert line.get_linestyle() == "-"
+    symbols = x[line.get_markevery()]
+    assert 20 <= symbols.size <= 60
+    spacings = np.diff(symbols if scale == "linear" else np.log(symbols[5:]))
+    assert np.ptp(spacings) < 0.3 * spacings.mean()
+    assert len(bars.lines[2][0].get_segments()) == symbols.size
+
+
+def test_curves_differ_and_are_drawn_in_the_style_of_the_reader():
+    exact = equilibrium(Chain(size=3))
+    run = exact.assign(velocity_width_error=0 * exact.velocity_width + 0.1)
+    results = {f"run {n}": run.assign_attrs(source="simulation") for n in range(42)}
+    results |= {f"theory {n}": exact for n in range(28)}
+    colours = list(map("#0000{:02x}".format, range(7)))
+    with plt.rc_context({"axes.prop_cycle": plt.cycler(color=colours)}):
+        ax = overlay(results, "velocity_width")
+    drawn = {
+        label: (line.get_color(), line.get_marker(), line.get_linestyle())
+        for container, label in zip(*ax.get_legend_handles_labels(), strict=True)
+        for line in [container if label.startswith("theory") else container.lines[0]]
+    }
+    assert len(set(drawn.values())) == len(results) == len(drawn)
+    assert {colour for colour, *_ in drawn.values()} == set(colours)
+    ax = overlay({"run": results["run 0"]}, "velocity_width", style={"run": {"color": "red"}})
+    assert ax.lines[0].get_color() == "red"
+
+
+def test_symbols_beyond_the_frame_are_marked_on_it():
+    _, ax = plt.subplots()
+    ax.errorbar([1, 2, 3], [0.0, 5.0, -7.0], 0.1, fmt="o", color="green")
+    ax.set_ylim(-1, 1)
+    mark_clipped(ax)
+    above, below = ax.lines[-2:]
+    assert (above.get_marker(), *above.get_xydata()) == ("^", pytest.approx([2, 1]))
+    assert (below.get_marker(), *below.get_xydata()) == ("v", pytest.approx([3, -1]))
+    assert above.get_color() == "green"
 
 
 @pytest.fixture(scope="module")
@@ -40,6 +123,9 @@ def test_what_both_have_is_drawn_over_its_dimension(pair, quantity, abscissa, la
     for line, result in zip(ax.lines, pair.values(), strict=True):
         np.testing.assert_array_equal(line.get_xdata(), result[abscissa])
         np.testing.assert_array_equal(line.get_ydata(), result[quantity])
+        rods = result.normalized_particle.values
+        between = (rods[1:] + rods[:-1]) / 2
+        np.testing.assert_allclose(result.normalized_contact, between, rtol=1e-12)
 
 
 def test_labels_of_axes_are_set_as_in_print():
@@ -59,15 +145,6 @@ def test_labels_of_axes_are_set_as_in_print():
     assert label("own", "<v_i v_i+1>", "1") == "<v$_{i}$ v$_{i+1}$>"
     assert label("own", "my_value $E^2$", "kg m^-1") == "my_value $E^2$ [kg m$^{-1}$]"
     assert label("own", "my_value", "R") == "my_value [R]"
-
-
-@pytest.mark.compiled
-def test_a_contact_lies_half_way_between_its_rods(pair):
-    for result in pair.values():
-        rods = result.normalized_particle.values
-        np.testing.assert_allclose(
-            result.normalized_contact, (rods[1:] + rods[:-1]) / 2, rtol=1e-12
-        )
 
 
 @pytest.mark.compiled
@@ -92,3 +169,30 @@ def test_velocity_densities_of_one_rod_are_not_mixed_with_those_of_all(pair):
     few = pair["rods"].isel(particle=slice(3), contact=slice(3))
     with pytest.raises(ValueError, match="over one dimension"):
         overlay({"rods": few}, "velocity_density")
+
+
+@pytest.mark.parametrize(("columns", "width"), [(1, 3.4), (3, 7.0)])
+def test_a_figure_is_one_or_two_columns_wide_with_letters_of_8_points(columns, width):
+    before = dict(plt.rcParams)
+    with house_style():
+        figure, axes = panels(2, columns, sharey=True)
+        for ax in axes:
+            ax.plot([1, 2], [3, 4], label="a rather long name of a curve")
+            ax.set_xlabel("x")
+        legend_above(figure, *axes)
+        figure.draw_without_rendering()
+        texts = [text for ax in axes for text in (ax.xaxis.label, *ax.get_xticklabels())]
+        assert figure.legends[0].get_window_extent().width < figure.bbox.width
+    assert figure.get_figwidth() == width
+    assert {text.get_fontsize() for text in texts} == {8}
+    assert [ax.get_title(loc="left") for ax in axes[:2]] == ["(a)", "(b)"]
+    assert len(figure.legends[0].get_texts()) == 1
+    assert dict(plt.rcParams) == before
+
+
+def test_commands_draw_whatever_the_backend_of_the_reader_is(tmp_path):
+    code = "from crazybilliards.apps.commands.line import main; main()"
+    command = ("theory", "equilibrium", "--size", "4", "--output", tmp_path)
+    environment = os.environ | {"MPLBACKEND": "nonsense"}
+    run(sys.executable, "-Wignore", "-c", code, *command, env=environment)
+    assert list(tmp_path.glob("*.png"))

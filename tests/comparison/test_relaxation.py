@@ -5,7 +5,6 @@ from functools import cache
 import numpy as np
 import pytest
 import xarray as xr
-from drawn_pictures import columns_without_numbers
 
 from crazybilliards.comparison import compare_relaxation, deviation, film, smooth
 from crazybilliards.comparison.layout import house_style
@@ -19,6 +18,18 @@ from crazybilliards.comparison.side_by_side.relaxation_figures import (
 from crazybilliards.model import Chain, chain_of, load, save
 
 pytestmark = pytest.mark.compiled
+
+
+def columns_without_numbers(figure):
+    """Return the columns of panels whose lowest has no numbers or no name below it."""
+    figure.draw_without_rendering()
+    lowest = {ax.get_subplotspec().colspan.start: ax for ax in figure.axes if ax.get_title("left")}
+    below = {
+        column: [each.get_text() for each in ax.get_xticklabels() if each.get_visible()]
+        for column, ax in lowest.items()
+        if ax.get_xlabel()
+    }
+    return [column for column in lowest if not any(below.get(column, []))]
 
 
 @pytest.fixture(scope="module")
@@ -41,15 +52,12 @@ def test_the_isothermal_fluid_is_wrong_and_the_one_with_temperature_right(tree):
     )
 
 
-@pytest.mark.parametrize(("release", "by"), [("displaced", 2.0), ("quenched", 3.0)])
-def test_with_a_gap_the_fluid_with_temperature_stays_close(release, by):
+def test_with_a_gap_the_fluid_with_temperature_stays_close():
     chain = Chain(size=50, gap=0.2, amplitude=5)
-    tree = compare_relaxation(chain, release, by, duration=20, replicas=400, progress=False)
+    tree = compare_relaxation(chain, "quenched", 3.0, duration=20, replicas=200, progress=False)
     assert "exact" not in tree
     distances = label_distances(tree)
-    assert distances["evolving"] < 0.12
-    if release == "quenched":
-        assert distances["isothermal"] > 8 * distances["evolving"]
+    assert 8 * distances["evolving"] < min(distances["isothermal"], 8 * 0.12)
 
 
 def test_inelastic_chains_are_followed_by_the_fluid_with_temperature_and_heat_flux():
@@ -62,8 +70,6 @@ def test_inelastic_chains_are_followed_by_the_fluid_with_temperature_and_heat_fl
     assert float((np.abs(off) - noise).max()) < fluid.attrs["kinetic_energy_model_error"] < 0.06
     assert label_distances(tree)["rods"] < 0.05
     assert len(draw_spacetime(condensed(tree)).axes) == 4
-    with pytest.raises(ValueError, match="release='gathered' holds for elastic collisions only"):
-        compare_relaxation(GAS.replace(restitution=0.9), "gathered", 0.5)
     growing = Chain(size=160, restitution=1.05, damping=4.0)
     with pytest.raises(ValueError, match=r"the energy diverges after t = .*: give a shorter"):
         compare_relaxation(growing, "displaced", 0.1, replicas=2, progress=False)
@@ -177,8 +183,5 @@ def test_a_film_shows_all_densities_in_motion(tree):
         ):
             density = smooth(tree[key].to_dataset()).density.isel(time=moment)
             np.testing.assert_array_equal(line.get_ydata(), density.sel(x=line.get_xdata()))
-
-
-def test_what_is_no_relaxation_is_not_filmed(tree):
     with pytest.raises(ValueError, match=r"must be what compare_relaxation returns, got a tree"):
         film(tree.filter(lambda node: "particles" not in node.path))

@@ -1,8 +1,8 @@
-"""Simulation against the gas: what comes out, and the pictures of it."""
+"""Simulation against the theory that a chain has: which one, what comes out, and the pictures."""
 
+import re
 import warnings
 
-import matplotlib
 import numpy as np
 import pytest
 
@@ -15,12 +15,11 @@ from crazybilliards.comparison.side_by_side.grid_figures import (
     draw_profile,
     draw_widths,
 )
-from crazybilliards.comparison.stationary_theories import TITLES
+from crazybilliards.comparison.stationary_theories import THEORIES, TITLES, theory_of
 from crazybilliards.comparison.widths import width_deviation
-from crazybilliards.kinetic import equilibrium, steady_state
+from crazybilliards.kinetic import UnmeasuredWarning, equilibrium, force_balance, steady_state
 from crazybilliards.model import Chain
 
-matplotlib.use("Agg")
 CHAIN = Chain(size=20)
 QUIET = {"progress": False, "threads": 1}
 
@@ -32,17 +31,12 @@ def tree():
     return compare(CHAIN, {"restitution": [0.9, 1.0]}, duration=500, **QUIET)
 
 
-def test_tree_holds_both(tree):
+def test_both_are_there_and_agree(tree):
     assert list(tree.children) == ["restitution_0.9", "restitution_1"]
     assert tree.attrs["status"] == "completed"
     for group in tree.children.values():
         assert set(group.children) == {SIMULATION, GAS}
-
-
-def test_deviations(tree):
-    every = [found for group in tree.children.values() for found in deviations(group).values()]
-    assert len(every) == 2
-    for density, width in every:
+        [(density, width)] = deviations(group).values()
         assert abs(width.centre) < 0.02 + 5 * width.error
         assert abs(width.largest) < 0.02 + 5 * width.error
         assert density.rms < 0.02
@@ -124,6 +118,35 @@ def test_any_parameter_may_vary():
     draw_widths(spring)
 
 
-def test_values_that_would_have_one_name_are_refused():
-    with pytest.raises(ValueError, match="must differ in their first six digits"):
-        compare(CHAIN, {"restitution": [0.9, 0.9 + 1e-8]}, **QUIET)
+BOX = CHAIN.replace(box=60)
+
+
+@pytest.mark.parametrize(
+    ("chain", "name"),
+    [
+        *((each, "equilibrium") for each in (CHAIN, CHAIN.replace(gap=0.5), BOX)),
+        (CHAIN.replace(spring="quadratic"), "equilibrium"),
+        *((each.replace(restitution=0.9), "steady_state") for each in (CHAIN, BOX)),
+        (CHAIN.replace(restitution=1.05), "steady_state"),
+        (BOX.replace(wall_restitution=0.9), "steady_state"),
+    ],
+)
+def test_what_keeps_its_energy_in_collisions_has_an_exact_equilibrium(chain, name):
+    assert theory_of(chain).name == name
+    theory_of(chain).check(chain)
+
+
+@pytest.mark.parametrize("name", THEORIES)
+@pytest.mark.parametrize("changed", [{"damping": 0.0}, {"restitution": 0.9, "mass_ratio": 2.0}])
+def test_a_theory_is_checked_by_the_error_that_it_raises(name, changed):
+    chain, theory = CHAIN.replace(**changed), THEORIES[name]
+    with pytest.raises(ValueError, match=r"\w") as caught:
+        theory.check(chain)
+    with pytest.raises(ValueError, match=f"^{re.escape(str(caught.value))}$"):
+        theory.solve(chain)
+
+
+def test_an_unknown_error_is_said_where_the_theory_is_called():
+    with pytest.warns(UnmeasuredWarning, match="force balance was not measured") as caught:
+        force_balance(CHAIN.replace(spring="quadratic"))
+    assert caught[0].filename == __file__

@@ -87,18 +87,18 @@ def test_a_film_has_all_its_pictures(run, kind, tmp_path, monkeypatch):
     if kind == "html without ffmpeg":
         monkeypatch.setattr(films, "has_ffmpeg", lambda: False)
     kind, *without = kind.split()
-    path = film(run, tmp_path / f"rods.{kind}", seconds=0.8, springs=True, progress=False)
+    path = film(run, tmp_path / f"rods.{kind}", seconds=0.4, springs=True, progress=False)
     assert [path] == list(tmp_path.iterdir())
     if kind == "gif":
         with Image.open(path) as pictures:
-            assert pictures.n_frames == 20
+            assert pictures.n_frames == 10
     elif without:
-        assert path.read_text().count("data:image/png;base64") == 20
+        assert path.read_text().count("data:image/png;base64") == 10
     elif kind == "html":
         assert path.read_text().count("data:video/mp4;base64") == 1
     else:
         shown = imageio_ffmpeg.count_frames_and_secs(str(path))
-        assert shown == (20, pytest.approx(0.8, abs=0.01))
+        assert shown == (10, pytest.approx(0.4, abs=0.01))
 
 
 def test_rods_that_are_far_apart_are_seen():
@@ -133,20 +133,12 @@ def test_without_ffmpeg_an_mp4_is_refused_before_any_work(monkeypatch):
 
 
 @pytest.mark.compiled
-def test_what_cannot_be_filmed_is_refused(run):
-    hot, none = Chain(size=100, restitution=1.3), "no snapshots in time"
-    for what, how, said in (
-        (run.isel(particle=0), {}, none),
-        (run.drop_vars("velocity"), {}, none),
-        (run * np.nan, {}, "no snapshot in which all velocities are known"),
-        (CHAIN, {"duration": -1}, "duration must be positive"),
-        (hot, {"progress": False}, "no steady state to film: its simulation diverged"),
-    ):
-        with pytest.raises(ValueError, match=said):
-            film(what, **how)
+def test_a_chain_whose_energy_grows_has_no_film():
+    with pytest.raises(ValueError, match="no steady state to film: its simulation diverged"):
+        film(Chain(size=100, restitution=1.3), progress=False)
 
 
-@pytest.mark.parametrize("kind", ["mp4", "gif", "html"])
+@pytest.mark.parametrize("kind", ["mp4", "gif"])
 def test_a_film_that_is_interrupted_leaves_the_former_file(run, kind, tmp_path, monkeypatch):
     path = tmp_path / f"rods.{kind}"
     path.write_text("former")

@@ -1,8 +1,6 @@
 """Sweeps: the same case the same file, nothing computed twice, nothing lost."""
 
-import errno
 import json
-import os
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from functools import wraps
@@ -17,7 +15,6 @@ from crazybilliards.comparison.sweeps import Case, Sweep, run_cases
 from crazybilliards.comparison.sweeps.case import JOBS, compute
 from crazybilliards.model import Chain
 from crazybilliards.model.fingerprint import room_fingerprint
-from crazybilliards.model.locks import locked
 from crazybilliards.particles import simulate
 
 QUIET = {"progress": False}
@@ -121,55 +118,56 @@ def test_whatever_is_wrong_with_a_case_does_not_cost_the_others(executor, tmp_pa
     assert missing_cases([bad, good], tmp_path) == [bad]
 
 
+class Scripted(Executor):
+    """A function says what becomes of each case that is submitted, the last of the futures."""
+
+    def __init__(self, script):
+        self.futures, self.script = [], script
+
+    def submit(self, function, /, *arguments):
+        self.futures.append(Future())
+        self.script(self.futures, lambda: function(*arguments))
+        return self.futures[-1]
+
+
 def test_what_was_finished_before_a_pool_broke_is_written(tmp_path):
-    class Dying(AtOnce):
-        """Gives the first case back last, and with it the news that the pool is broken."""
+    """It gives the first case back last, and with it the news that the pool is broken."""
 
-        def submit(self, function, /, case, source):
-            submitted.append(case)
-            if case == submitted[0]:
-                return dead
-            if len(submitted) == len(cases):
-                dead.set_exception(BrokenProcessPool("terminated abruptly"))
-            return super().submit(function, case, source)
+    def dying(futures, compute):
+        if len(futures) > 1:
+            futures[-1].set_result(compute())
+        if len(futures) == len(cases):
+            futures[0].set_exception(BrokenProcessPool("terminated abruptly"))
 
-    dead, submitted, cases = Future(), [], sweep().cases()
+    cases = sweep().cases()
     with pytest.raises(RuntimeError, match="finished cases are kept"):
-        run_cases(cases, tmp_path, Dying(), **QUIET)
-    assert missing_cases(cases, tmp_path) == [submitted[0]]
+        run_cases(cases, tmp_path, Scripted(dying), **QUIET)
+    assert missing_cases(cases, tmp_path) == cases[:1]
 
 
 @pytest.mark.parametrize("raised", [True, False], ids=["when submitted", "when asked"])
 def test_nothing_is_submitted_to_a_pool_that_broke(raised, tmp_path):
-    class Dead(Executor):
-        def submit(self, function, /, case, source):
-            submitted.append(case)
-            if raised:
-                raise BrokenProcessPool("terminated abruptly")
-            future = Future()
-            future.set_exception(BrokenProcessPool("terminated abruptly"))
-            return future
+    def dead(futures, _):
+        error = BrokenProcessPool("terminated abruptly")
+        if raised:
+            raise error
+        futures[-1].set_exception(error)
 
-    submitted = []
+    pool = Scripted(dead)
     with pytest.raises(RuntimeError, match="finished cases are kept"):
-        run_cases(sweep().cases(), tmp_path, Dead(), **QUIET)
-    assert len(submitted) == 1
+        run_cases(sweep().cases(), tmp_path, pool, **QUIET)
+    assert len(pool.futures) == 1
 
 
 def test_few_of_many_cases_are_submitted_at_a_time_and_ctrl_c_cancels_them(tmp_path):
-    class Waiting(Executor):
-        """Computes nothing; the thousandth case is interrupted."""
+    def interrupted(futures, _):
+        if len(futures) == 1000:
+            futures[-1].set_exception(KeyboardInterrupt())
 
-        def submit(self, function, /, case, source):
-            submitted.append(Future())
-            if len(submitted) == 1000:
-                submitted[-1].set_exception(KeyboardInterrupt())
-            return submitted[-1]
-
-    submitted, amplitudes = [], np.linspace(1, 2, 3000)
+    pool, many = Scripted(interrupted), Sweep({"amplitude": np.linspace(1, 2, 3000)}, "equilibrium")
     with pytest.raises(KeyboardInterrupt):
-        run_cases(Sweep({"amplitude": amplitudes}, "equilibrium"), tmp_path, Waiting(), **QUIET)
-    assert [future.cancelled() for future in submitted] == 999 * [True] + [False]
+        run_cases(many, tmp_path, pool, **QUIET)
+    assert [future.cancelled() for future in pool.futures] == 999 * [True] + [False]
 
 
 def test_a_wrong_case_at_the_end_of_a_grid_is_found_before_any_work(tmp_path):
@@ -185,20 +183,3 @@ def test_runs_that_are_too_short_are_counted(tmp_path):
         cb.particles.ShortRunWarning, match=r"^2 of 4 cases; the first: duration=20 is short"
     ):
         run_cases(short, tmp_path, **QUIET)
-
-
-def test_a_folder_is_filled_by_one_process_at_a_time(tmp_path):
-    cases = sweep().cases()[:1]
-    with locked(tmp_path), pytest.raises(BlockingIOError, match="in use by another process"):
-        run_cases(cases, tmp_path, **QUIET)
-    assert run_cases(cases, tmp_path, **QUIET) == {}
-
-
-def test_a_full_disk_is_an_error_that_leaves_nothing_behind(tmp_path, monkeypatch):
-    def full(source, target):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr(os, "replace", full)
-    with pytest.raises(OSError, match=r"No space left .*\.nc"):
-        run_cases(sweep().cases(), tmp_path, **QUIET)
-    assert list(tmp_path.glob("*.nc")) == []

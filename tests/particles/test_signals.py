@@ -2,7 +2,6 @@
 
 import io
 import signal
-import subprocess
 import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -30,42 +29,29 @@ def test_ctrl_c_while_replicas_are_started_stops_the_run(tmp_path, monkeypatch):
         simulate(Chain(size=10), warmup=1e9, progress=False, checkpoint=tmp_path / "state")
 
 
-EVERY_ENTRY = """
-import signal, threading
-from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
-
-enter, entries = threading.Condition.__enter__, []
-
-def and_interrupted(self):
-    entered = enter(self)
-    if threading.get_ident() == threading.main_thread().ident:
-        entries.append(self)
-        if len(entries) == number:
-            signal.raise_signal(signal.SIGINT)
-    return entered
-
-for number in range(1, 9):
-    entries.clear()
-    threading.Condition.__enter__ = and_interrupted
-    try:
-        run = simulate(Chain(size=10), duration=1e9, replicas=4, threads=2, progress=False)
-        print(run.attrs["status"])
-    except KeyboardInterrupt as error:
-        print(error)
-    threading.Condition.__enter__ = enter
-"""
-
-
 @pytest.mark.compiled
-def test_ctrl_c_may_come_while_the_lock_of_the_threads_is_being_taken():
+@pytest.mark.posix
+@pytest.mark.parametrize("number", range(1, 9))
+def test_ctrl_c_may_come_while_the_lock_of_the_threads_is_being_taken(number, monkeypatch):
     """An error between the taking and the block that frees it would leave it held for ever."""
-    done = subprocess.run(
-        [sys.executable, "-c", EVERY_ENTRY], capture_output=True, text=True, timeout=200, check=True
-    )
-    ends = done.stdout.splitlines()
-    assert len(ends) == 8
-    assert set(ends) <= {"interrupted", "nothing was measured yet"}
+    enter, entries = threading.Condition.__enter__, []
+
+    def and_interrupted(self):
+        entered = enter(self)
+        if threading.get_ident() == threading.main_thread().ident:
+            entries.append(self)
+            if len(entries) == number:
+                signal.raise_signal(signal.SIGINT)
+        return entered
+
+    run = {"duration": 1e9, "replicas": 4, "threads": 2, "progress": False}
+    monkeypatch.setattr(threading.Condition, "__enter__", and_interrupted)
+    try:
+        end = simulate(Chain(size=10), **run).attrs["status"]
+    except KeyboardInterrupt as error:
+        end = str(error)
+    monkeypatch.undo()
+    assert end in ("interrupted", "nothing was measured yet")
 
 
 HANDLERS = {  # what a program does at a signal, how it then ends, and how many runs it gets

@@ -108,26 +108,12 @@ def run(start, *arguments):
     return output
 
 
-ATTEMPTS = {
-    "socket.create_connection(('192.0.2.1', 80), 5)": "socket.getaddrinfo 192.0.2.1",
-    "socket.socket().connect(('192.0.2.1', 80))": "socket.connect 192.0.2.1",
-    "socket.gethostbyname('example.org')": "socket.gethostbyname example.org",
-    "socket.socket(type=socket.SOCK_DGRAM).sendto(b'', ('192.0.2.1', 53))": "socket.sendto 192.0",
-}
-ITSELF = """
-import socket
-with socket.create_server(("127.0.0.1", 0)) as server:
-    socket.create_connection(("localhost", server.getsockname()[1]), 60).close()
-"""
-
-
-def test_the_guard_refuses_what_is_asked_and_lets_this_machine_talk_to_itself(guarded):
-    for attempt, event in ATTEMPTS.items():
-        done = guarded("-c", f"import socket; {attempt}", stderr=subprocess.PIPE)
-        assert "OSError: no network" in done.communicate(timeout=600)[1]
-        assert guarded.log.read_text().startswith(event)
-        guarded.log.write_text("")
-    run(guarded, "-c", ITSELF)
+def test_the_guard_refuses_what_is_asked(guarded):
+    attempt = "import socket; socket.create_connection(('192.0.2.1', 80), 5)"
+    done = guarded("-c", attempt, stderr=subprocess.PIPE)
+    assert "OSError: no network" in done.communicate(timeout=600)[1]
+    assert guarded.log.read_text().startswith("socket.getaddrinfo 192.0.2.1")
+    guarded.log.write_text("")
 
 
 def test_every_module_and_the_python_interface(guarded):
