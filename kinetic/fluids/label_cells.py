@@ -42,9 +42,9 @@ def make_cells(state: Stationary, exponent: int, number: int | None) -> LabelCel
     if state.stiffness > _WEAKEST:
         eta = state.lam * labels + spring.displacement(force / state.stiffness, exponent)
     else:
-        eta = state.at(labels)[0]
+        eta = state.at(labels)
     if at_walls:
-        end = state.wall + state.lam / 2
+        end = state.wall
         labels, eta = mirrored(labels, 0.5), mirrored(eta, end)
         shares, density = np.pad(shares, 1, mode="edge"), pressure
         faces, eta_faces = bounds, np.concatenate([[-end], eta_faces, [end]])
@@ -61,9 +61,9 @@ def mirrored(values: Array, end: float) -> Array:
 
 def _faces(state: Stationary, number: int | None) -> Array:
     """Return the stationary eta of the inner faces: even at the edges, wider in a plateau."""
-    end = state.wall + state.lam / 2
+    end = state.wall
     if not state.at_walls:
-        end = float(state.at(np.array([0.5 - _LAST_SHARE]))[0][0])
+        end = float(state.at(np.array([0.5 - _LAST_SHARE]))[0])
     fine = np.linspace(0, end, 20_001)
     depth = state.lam / 2 - fine
     cells_up_to = cumulative_trapezoid(1 / np.clip(1 + (depth - 6) / 3, 1, 8), fine, initial=0)

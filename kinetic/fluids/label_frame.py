@@ -201,7 +201,7 @@ def _starting_fields(
 
     offset = cells.shares[own] / (2 * np.sqrt(3))
     left, right = cells.labels[own] - offset, cells.labels[own] + offset
-    inner, outer = state.at(left)[0], state.at(right)[0]
+    inner, outer = state.at(left), state.at(right)
     weight = (cells.eta[own] - inner) / (outer - inner)
     eta_left, v_left, _ = at(left)
     eta_right, v_right, _ = at(right)
@@ -210,7 +210,7 @@ def _starting_fields(
         raise ValueError("start: it is too steep for its grid of positions")
     v = (v_left + v_right) / 2
     if chain.box:
-        eta, v = mirrored(eta, state.wall + state.lam / 2), mirrored(v, 0.0)
+        eta, v = mirrored(eta, state.wall), mirrored(v, 0.0)
     fields = {"eta": eta, "V": v}
     empty = np.diff(eta)[[0, -1]] > _EMPTIEST * np.diff(cells.eta)[[0, -1]]
     if thermal and chain.box and empty.any():

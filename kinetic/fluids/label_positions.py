@@ -41,9 +41,9 @@ def on_positions(
         flux = _heat_flux(chain, cells, solution[:, 3], distance)
     # Stay just inside: at the end itself rounding may put a node into the vacuum.
     inner_faces = rest[1:-1] if chain.box else rest
-    nodes = _refined(inner_faces, (state.right + state.lam / 2) * (1 - 1e-12))
+    nodes = _refined(inner_faces, state.eta[-1] * (1 - 1e-12))
     labels, log_density = state.profile(nodes)
-    rod_nodes = state.at(chain.rank / L)[0]
+    rod_nodes = state.at(chain.rank / L)
 
     place = [_continued(rest, y, nodes) for y in moved]
     position = [s * eta + 2 * R * L * labels for eta, _ in place]

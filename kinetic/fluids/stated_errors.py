@@ -57,7 +57,7 @@ def _released_from(chain: Chain, fields: FlowFields) -> Release | None:
     x, label, weight = x[inside], label[inside], np.sqrt(density[inside])
     y = (x - 2 * chain.radius * (label - L / 2)) / s
     state = stationary(chain)
-    rest = state.unit * state.at(np.clip(label / L - 0.5, -0.5 + 1e-9, 0.5 - 1e-9))[0] / s
+    rest = state.unit * state.at(np.clip(label / L - 0.5, -0.5 + 1e-9, 0.5 - 1e-9)) / s
     stretch, shift = np.polyfit(rest, y, 1, w=weight)
     off = np.abs(y - stretch * rest - shift) * weight
     heat = variance[inside] / W**2

@@ -206,7 +206,7 @@ def _scores_at_rest(chain: Chain) -> tuple[Array, Array]:
 
 
 def _place_at_rest(chain: Chain, score: float) -> float:
-    eta, _ = stationary(chain).at(np.array([ndtr(score) - 0.5]))
+    eta = stationary(chain).at(np.array([ndtr(score) - 0.5]))
     return stationary(chain).unit * float(eta[0])
 
 

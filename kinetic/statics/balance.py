@@ -15,11 +15,11 @@ rho_y = rho/(1 - 2 R rho), it reads
 which stays accurate where 1 - 2 R rho is too small to be stored.
 
 **Closures.** *By labels*, the default, without an input: the N-th rod from the left belongs to the
-N-th anchor, so <dx> = x - (2R + g)(N - L/2) with N' = rho. It is a boundary-value problem for
-``scipy.integrate.solve_bvp`` in :mod:`crazybilliards.kinetic.statics.label_closure`. *Prescribed*
-displacement, as in the paper: <dx>(x) is measured and fitted (figure ``fig:atan``). (**) then has a
-solution with ``scipy.special.wrightomega``, and ``brentq`` finds its constant, which gives L rods;
-see :mod:`crazybilliards.kinetic.statics.wright_closure`.
+N-th anchor, so <dx> = x - (2R + g)(N - L/2) with N' = rho
+(:mod:`crazybilliards.kinetic.statics.label_closure`). *Prescribed* displacement, as in the paper:
+<dx>(x) is measured and fitted, figure ``fig:atan``
+(:mod:`crazybilliards.kinetic.statics.wright_closure`). With either, (**) has a solution with
+``scipy.special.wrightomega``, and ``scipy.optimize.brentq`` finds its constant, which gives L rods.
 
 **Temperature.** With a prescribed W^2(x), for example one measured for e != 1, the balance is
 
@@ -81,16 +81,14 @@ def force_balance(
     xarray.Dataset
         ``density``, ``label`` and ``displacement`` over x, by labels also ``mean_displacement``
         and ``velocity_width`` over particle, and in a box ``wall_force`` over wall, which is exact
-        at restitution 1 without a gap or without springs. ``attrs["residual"]`` is, by labels, the
-        drift of the conserved quantity of the equations (an error of ln rho), and with a prescribed
-        displacement the relative error of the number of rods. By labels there are also the errors
-        of the theory itself, its distance from the exact equilibrium for chains like this one: 2
-        to 1000 rods, linear springs, gaps up to 10 s, e = 1. ``attrs["density_model_error"]``
-        is the largest error of the smoothed density, relative to
-        close packing, and ``attrs["mean_displacement_model_error"]`` that of ``mean_displacement``
-        in thermal lengths. In a box without a gap or without springs the density is off by up to
-        0.18 within a rod length of the walls, where the rods have layers. For others the errors are
-        NaN, with an ``UnmeasuredWarning``.
+        at restitution 1 without a gap or without springs. ``attrs["residual"]`` is the relative
+        error of the number of rods. By labels there are also the errors of the theory itself, its
+        distance from the exact equilibrium for chains like this one: 2 to 1000 rods, linear
+        springs, gaps up to 10 s, e = 1. ``attrs["density_model_error"]`` is the largest error of
+        the smoothed density, relative to close packing, ``attrs["mean_displacement_model_error"]``
+        that of ``mean_displacement`` in thermal lengths. In a box without a gap or without springs
+        the density is off by up to 0.18 within a rod length of the walls, where the rods have
+        layers. For others the errors are NaN, with an ``UnmeasuredWarning``.
 
     Raises
     ------

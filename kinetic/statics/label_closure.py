@@ -1,40 +1,43 @@
-r"""The force balance closed by labels, a boundary-value problem without any input.
+r"""The force balance closed by labels, up to one integral in closed form.
 
 With the label N(x) = int rho, the mean displacement at x is <dx> = x - (2R + g)(N - L/2). In the
 reduced coordinate y = x - 2R (N - L/2) the length of the rods drops out. The unit of length l is
 the thermal length s = (T/k)^(1/n) (n: exponent of the spring's potential), or half the room between
-the walls, X/2 - RL, where this is shorter, and
+the walls, X/2 - RL, where this is shorter. With
 
-    zeta  distance of y from the outer edge of the lattice of anchors, y = l zeta + g L/2,
-    t     share of the rods further out, N = L (1 - t),
-    P     log density, rho_y = (L/l) exp(P),
-    u     displacement <dx>/l = zeta + Lam t,   with Lam = g L/l,
-    K     strength of the springs, (l/s)^n: 1 without walls.
+    eta = y/l,    nu = N/L - 1/2,    P = ln(rho_y l/L),    u = <dx>/l = eta - Lam nu,    Lam = g L/l
 
-Then, on the right half of the (symmetric) chain,
+and the strength of the springs K = (l/s)^n, which is 1 without walls, the right half of the
+(symmetric) chain has
 
-    P' = -K u |u|^(n-2),      t' = -exp(P),      t = 1/2 at the centre,      t = 0 far outside,
+    P' = -K u |u|^(n-2),      nu' = exp(P),      nu = 0 at the centre,      nu = 1/2 far outside,
 
-or at the wall, zeta = (X/2 - RL)/l - Lam/2. No other condition holds at a wall: the pressure there
-follows. Lam exp(P) - P - K |u|^n/n is conserved, and its drift is the residual. Without a gap
-(Lam = 0) the solution is rho_y = L times the density of a rod that is alone. Without springs the
-anchors mean nothing, and rho_y is constant.
+or at the wall. No other condition holds there: the pressure on it follows. Since u' = 1 - Lam e^P,
 
-Deep inside a chain with a gap there is a plateau with u = 0 and rho_y = 1/g. Perturbations of it
-decay as exp(-distance/s) for linear and as 6 (s/distance)^2 for quadratic springs. The solver
-starts where they have vanished.
+    Lam e^P - P - K |u|^n/n = constant.
+
+So e^P is a Wright omega function of u. With d = 1 - Lam e^P and the constant 1 + ln Lam + eps,
+
+    -d - ln(1 - d) = eps + K |u|^n/n,      1/2 - nu = int_u e^P/d du,
+
+where d > 0 if the rods spread, and d < 0 if the walls push them together. A root finder determines
+eps so that nu = 0 at u = 0. Deep inside a long chain with a gap there is a plateau with u = 0 and
+rho_y = 1/g, and eps is below what is told from 0. Without a gap Lam is set to 1e-12, and rho_y is L
+times the density of a rod that is alone. Without springs the anchors mean nothing, and rho_y is
+constant.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 import xarray as xr
-from scipy.integrate import solve_bvp
-from scipy.special import gamma, gammaincc
+from numpy.polynomial import legendre
+from scipy.interpolate import CubicHermiteSpline
+from scipy.optimize import brentq
+from scipy.special import wrightomega
 
 from crazybilliards.kinetic.accuracy import expected
 from crazybilliards.model import Chain, spring
@@ -45,7 +48,10 @@ from crazybilliards.model.vocabulary import result
 BY_LABELS = "force balance, by labels"
 
 _TAIL = 36.0  # tails are followed down to exp(-36) = 2e-16 of the maximum
-_EDGE_DEPTH = {2: 40.0, 3: 1e4}  # where the plateau is reached, by exponent n
+_FEW_CELLS, _CELLS = 600, 6000  # of the integral, and of the table, from the centre outwards
+_POINTS = 4  # of the quadrature in a cell
+_NO_GAP = 1e-12  # the least Lam, and the least |u| at a wall
+_PLATEAU = 1e-35  # the least eps: rho_y is 1/g to rounding
 
 
 def solve_label_closure(chain: Chain) -> xr.Dataset:
@@ -55,7 +61,7 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
     density, label = state.fields(chain, x)
     lattice = (2 * chain.radius + chain.lattice_gap) * (label - chain.size / 2)
     # The middle of rod i has the label i - 1/2.
-    rods = state.unit * state.at(chain.rank / chain.size)[0]
+    rods = state.unit * state.at(chain.rank / chain.size)
     walls = {}
     if chain.box:
         walls["wall_force"] = ("wall", np.full(2, chain.temperature * state.at_walls * chain.size))
@@ -80,76 +86,54 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
 
 @dataclass(frozen=True)
 class Stationary:
-    """The scaled stationary state: a plateau up to zeta = left, computed up to right, then vacuum.
-
-    Labels are nu = N/L - 1/2 in (-1/2, 1/2), eta = y/l, and densities rho_y are in L/l.
-    """
+    """The scaled stationary state of this module: a table from the centre outwards, then vacuum."""
 
     unit: float  # l
     stiffness: float  # K
     lam: float
-    left: float
-    right: float
-    wall: float  # the wall's zeta
-    scale: float  # the solver's second unknown is scale * t
-    curve: Callable[[Array], Array]
-    residual: float
+    wall: float  # eta of the wall
+    eta: Array
+    beyond: Array  # 1/2 - nu
+    log_density: Array  # P
+    slope: Array  # P'
 
     @property
     def at_walls(self) -> float:
         """The density rho_y/L at the walls [1/R]; 0 if no rod comes so far."""
-        reached = self.right == self.wall
-        return float(np.exp(self.curve(np.array(self.right))[0])) / self.unit if reached else 0.0
+        return float(np.exp(self.log_density[-1])) / self.unit if self.eta[-1] == self.wall else 0.0
 
-    def _evaluate(self, zeta: Array) -> tuple[Array, Array]:
-        """Return P and t at zeta."""
-        log_density, scaled = self.curve(np.clip(zeta, self.left, self.right))
-        share = np.clip(scaled / self.scale, 0.0, 1.0)
-        inside, outside = zeta < self.left, zeta > self.right
-        if inside.any():
-            log_density = np.where(inside, -np.log(self.lam), log_density)
-            share = np.where(inside, -zeta / self.lam, share)
-        return np.where(outside, -np.inf, log_density), np.where(outside, 0.0, share)
+    @property
+    def residual(self) -> float:
+        """The relative error of the number of rods, integrated again."""
+        density = np.exp(self.log_density)
+        curve = CubicHermiteSpline(self.eta, density, density * self.slope)
+        return abs(2 * float(curve.integrate(0, self.eta[-1])) - 1)
 
-    def _invert(self, function: Callable[[Array], tuple[Array, Array]], target: Array) -> Array:
-        """Solve function(zeta) = target for an ascending function that returns (value, slope)."""
-        far = self.right + 1e3 * max(self.right, 1.0)
-        table = np.concatenate([[-self.lam / 2], np.linspace(self.left, self.right, 40_001), [far]])
-        zeta = np.interp(target, function(table)[0], table)
-        for _ in range(3):  # the table is right to 1e-3: three iterations reach rounding
-            value, slope = function(zeta)
-            zeta = zeta - (value - target) / slope
-        return zeta
-
-    def at(self, labels: Array) -> tuple[Array, Array]:
-        """Return eta and the density at labels."""
-
-        def inside(zeta: Array) -> tuple[Array, Array]:
-            log_density, share = self._evaluate(zeta)
-            return 1 - share, np.exp(log_density)
-
-        zeta = self._invert(inside, 0.5 + np.abs(labels))
-        density = np.exp(self._evaluate(zeta)[0])
-        return np.sign(labels) * (zeta + self.lam / 2), density
+    def at(self, labels: Array) -> Array:
+        """Return eta at labels nu."""
+        curve = CubicHermiteSpline(-self.beyond, self.eta, np.exp(-self.log_density))
+        return np.sign(labels) * curve(np.abs(labels) - 0.5)
 
     def profile(self, eta: Array) -> tuple[Array, Array]:
-        """Return label and log density at eta."""
-        log_density, share = self._evaluate(np.abs(eta) - self.lam / 2)
-        return np.sign(eta) * (0.5 - share), log_density
+        """Return nu and P at eta."""
+        return self._at_places(eta, self.eta, np.ones(self.eta.size))
 
     def fields(self, chain: Chain, x: Array, stretch: float = 1.0) -> tuple[Array, Array]:
         """Return density and label at positions x, of the state stretched in y."""
-        unit, L, R = stretch * self.unit, chain.size, chain.radius
-
-        def position(zeta: Array) -> tuple[Array, Array]:
-            log_density, share = self._evaluate(zeta)
-            place = unit * (zeta + self.lam / 2) + 2 * R * L * (0.5 - share)
-            return place, unit + 2 * R * L * np.exp(log_density)
-
-        log_density, share = self._evaluate(self._invert(position, np.abs(x)))
+        unit, L, rods = stretch * self.unit, chain.size, 2 * chain.radius * chain.size
+        places = unit * self.eta + rods * (0.5 - self.beyond)
+        label, log_density = self._at_places(x, places, unit + rods * np.exp(self.log_density))
         reduced_density = L / unit * np.exp(log_density)
-        density = reduced_density / (1 + 2 * R * reduced_density)
-        return density, L / 2 + np.sign(x) * L * (0.5 - share)
+        return reduced_density / (1 + 2 * chain.radius * reduced_density), L * (0.5 + label)
+
+    def _at_places(self, wanted: Array, places: Array, growth: Array) -> tuple[Array, Array]:
+        """Return nu and P at wanted places; those of the table grow with eta as ``growth``."""
+        size, density = np.abs(wanted), np.exp(self.log_density)
+        within = np.minimum(size, places[-1])
+        beyond = CubicHermiteSpline(places, self.beyond, -density / growth)(within)
+        log_density = CubicHermiteSpline(places, self.log_density, self.slope / growth)(within)
+        label = np.sign(wanted) * (0.5 - np.maximum(beyond, 0.0))
+        return label, np.where(size > within, -np.inf, log_density)
 
 
 def length_unit(chain: Chain) -> float:
@@ -159,63 +143,48 @@ def length_unit(chain: Chain) -> float:
 
 @lru_cache(maxsize=8)
 def stationary(chain: Chain) -> Stationary:
-    """Solve the boundary-value problem of this module for a chain at its temperature."""
-    n, room = chain.potential_exponent, chain.walls[1]
-    unit = length_unit(chain)
-    stiffness = (unit / chain.thermal_length) ** n
-    lam = chain.lattice_gap * chain.size / unit if chain.stiffness > 0 else 0.0
-    wall = room / unit - lam / 2
-    right = min((n * _TAIL) ** (1 / n) * chain.thermal_length / unit, wall)
-    edge = min(wall, 0.0)
-    depth = _EDGE_DEPTH[n] * (chain.thermal_length / unit) - edge if stiffness else 0.0
-    left = -min(lam / 2, depth)
-    share_left = 0.5 if lam <= 2 * depth else depth / lam
-    scale = max(lam, 1.0)
+    """Solve the equations of this module for a chain at its temperature."""
+    n, unit = chain.potential_exponent, length_unit(chain)
+    K, wall = (unit / chain.thermal_length) ** n, chain.walls[1] / unit
+    gap = chain.lattice_gap * chain.size / unit if chain.stiffness > 0 else 0.0
+    lam = max(gap, _NO_GAP)
+    far = spring.reach(_TAIL, n) * (chain.thermal_length / unit)
+    end = min(far, wall - lam / 2)
+    end = end if abs(end) > _NO_GAP else _NO_GAP
+    points, weights = legendre.leggauss(_POINTS)
 
-    def equations(zeta: Array, state: Array) -> Array:
-        u = zeta + lam / scale * state[1]
-        return np.array([-stiffness * spring.force(u, n), -scale * np.exp(state[0])])
+    def solved(log_eps: float, cells: int) -> tuple[Array, Array, Array, Array]:
+        """Return u, P and the distances of eta and nu from their ends, from u = 0 outwards."""
+        eps = np.exp(log_eps)
+        # Even where eps is more than the energy of the springs, and in the logarithm beyond.
+        spread = max(np.arcsinh(abs(end) * (K / (n * eps)) ** (1 / n)), 1e-3)
+        u = end * np.sinh(spread * np.linspace(0, 1, cells + 1)) / np.sinh(spread)
+        half = np.diff(u)[:, np.newaxis] / 2
+        inside = u[:-1, np.newaxis] + half * (1 + points)
+        d, P = _closed_form(eps + K * spring.potential(inside, n), lam, end)
+        steps = (half / d) @ weights, (half * np.exp(P) / d) @ weights
+        eta, nu = (np.append(np.cumsum(each[::-1])[::-1], 0.0) for each in steps)
+        return u, _closed_form(eps + K * spring.potential(u, n), lam, end)[1], eta, nu
 
-    def boundary(at_left: Array, at_right: Array) -> Array:
-        return np.array([at_left[1] / scale - share_left, at_right[1]])
+    def missing(log_eps: float) -> float:
+        return float(solved(log_eps, _FEW_CELLS)[3][0]) - 0.5
 
-    # The mesh is fine near the edge and geometrically coarser into the plateau, if there is any.
-    fine = edge - 5.0 if left < edge - 6 else left
-    inner = np.empty(0)
-    if left < fine:
-        inner = edge - np.geomspace(edge - fine, edge - left, 200)[:0:-1]
-    mesh = np.concatenate([inner, np.linspace(fine, right, 300)])
-    guess_density, guess_share = _free_lattice(n, lam, mesh)
-    if right == wall:  # from a constant density on
-        guess_density = np.full(mesh.size, share_left / (right - left))
-        guess_share = guess_density * (right - mesh)
-    guess = np.array([np.log(guess_density), scale * guess_share])
-    solution = solve_bvp(equations, boundary, mesh, guess, tol=1e-9, max_nodes=100_000)
-    if not solution.success:
-        raise ValueError(f"the force balance found no solution: {solution.message}")
-    P, u = solution.y[0], solution.x + lam / scale * solution.y[1]
-    conserved = (lam * np.exp(P) - P - stiffness * spring.potential(u, n))[P.max() - 30 < P]
-    known = unit, stiffness, lam, left, right, wall, scale
-    return Stationary(*known, solution.sol, float(np.ptp(conserved)))
+    low, high = np.log([_PLATEAU, 50 + lam])
+    log_eps = low if missing(low) < 0 else brentq(missing, low, high, xtol=1e-13)
+    u, P, inwards, beyond = solved(log_eps, _CELLS)
+    eta = min(wall, far + lam / 2) - inwards
+    eta[0], beyond[0] = 0.0, 0.5  # the plateau between is within the first cell
+    return Stationary(unit, K, lam, wall, eta, beyond, P, -K * spring.force(u, n))
 
 
-def _free_lattice(n: int, lam: float, zeta: Array) -> tuple[Array, Array]:
-    """Density exp(P) and share t of rods without collisions: a thermally smeared lattice."""
-    from scipy.stats import gennorm  # its import takes half a second, and few calls need it
-
-    free = gennorm(n, scale=n ** (1 / n))
-    if lam < 1e-3:
-        return free.pdf(zeta), free.sf(zeta)
-
-    def beyond(a: Array) -> Array:
-        """int_a^inf sf = E max(d - a, 0)."""
-        moment = gamma(2 / n) / gamma(1 / n) * n ** (1 / n) / 2
-        size = np.abs(a)
-        positive = moment * gammaincc(2 / n, size**n / n) - size * free.sf(size)
-        return np.where(a > 0, positive, positive - a)
-
-    density = (free.sf(zeta) - free.sf(zeta + lam)) / lam
-    return np.maximum(density, 1e-17 / lam), (beyond(zeta) - beyond(zeta + lam)) / lam
+def _closed_form(energy: Array, lam: float, side: float) -> tuple[Array, Array]:
+    """Return d, with the sign of ``side``, and P for given eps + K |u|^n/n."""
+    root = np.copysign(np.sqrt(2 * energy), side)
+    # A little off the branch cut, so that rounding does not choose the branch.
+    omega = wrightomega(-1 - energy + 1j * np.pi * (1 - np.copysign(1e-12, side))).real
+    series = root * (1 - root / 3 + root**2 / 36 + root**3 / 270)
+    d = np.where(np.abs(root) < 0.01, series, 1 + omega)
+    return d, -d - energy - np.log(lam)
 
 
 def fluid_reach(chain: Chain) -> float:

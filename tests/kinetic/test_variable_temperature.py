@@ -19,7 +19,7 @@ def close_packing(chain, one, other):
 @pytest.mark.parametrize("size", [2, 10, 1000, 100_000])
 @pytest.mark.parametrize("amplitude", [0.1, 100])
 def test_a_constant_profile_gives_the_label_closure(size, gap, amplitude):
-    """Newton's method in x against solve_bvp in y: nothing in common but the equation."""
+    """Newton's method in x against a quadrature over u: nothing in common but the equation."""
     chain = Chain(size=size, gap=gap, amplitude=amplitude)
     free = chain.free_velocity_width**2
     elements = force_balance(chain, velocity_variance=lambda x: free)
