@@ -16,7 +16,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from crazybilliards.kinetic.exact.gibbs_measure import recursion_of
+from crazybilliards.kinetic.exact.recursion import recursion_of, weights
 from crazybilliards.kinetic.gas.cells import Cells
 from crazybilliards.kinetic.gas.mean_state import Medium, between
 from crazybilliards.kinetic.rods.places import at_temperature
@@ -73,15 +73,11 @@ def _of_rods(chain: Chain) -> tuple[Array, Array]:
     if not chain.box and chain.size > _MOST:
         chain = chain.replace(size=_MOST)
     recursion, (place, force) = recursion_of(chain), np.empty((2, chain.size))
-    at_wall = 0.0
     for i in range(chain.size):
-        d, log_p = recursion.log_density(i)
-        p = np.exp(log_p - log_p.max())
-        p /= (p * recursion.weights).sum()
-        if i == 0 and chain.box and recursion.nodes(0)[-1] == chain.walls[1]:
-            at_wall = chain.temperature * p[0] / (d[1] - d[0])
-        p *= recursion.weights
-        place[i], force[i] = chain.reduced_anchors[i] + d @ p, chain.force(d) @ p
+        d, p, _ = recursion.distribution(i)
+        share = recursion.spacing * weights(d.size) * p
+        place[i], force[i] = chain.reduced_anchors[i] + d @ share, chain.force(d) @ share
+    at_wall = chain.temperature * recursion.distribution(0)[1][0] if chain.box else 0.0
     # From both ends inwards, so that rounding does not add up: the sum of all forces vanishes.
     below = -np.concatenate([[0.0], np.cumsum(force)])
     beyond = np.concatenate([[0.0], np.cumsum(force[::-1])])[::-1]

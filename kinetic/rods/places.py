@@ -31,8 +31,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from scipy.special import betainc, betaincinv, betaln, log_ndtr, ndtr, ndtri
 
-from crazybilliards.kinetic.exact import between_walls
-from crazybilliards.kinetic.exact.gibbs_measure import recursion_of
+from crazybilliards.kinetic.exact.recursion import recursion_of, weights
 from crazybilliards.kinetic.statics.label_closure import stationary
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
@@ -169,17 +168,16 @@ def elastic_rods(chain: Chain) -> RodPlaces:
     recursion, L = recursion_of(chain), chain.size
     rods = RodPlaces(*np.empty((4, L, _NODES)))
     for i in range(L):
-        d, log_p = recursion.log_density(i)
-        p = np.exp(log_p - log_p.max())
-        likely = np.flatnonzero(p > _TAIL)
+        d, p, _ = recursion.distribution(i)
+        likely = np.flatnonzero(p > _TAIL * p.max())
         d, p = d[likely[0] : likely[-1] + 1], p[likely[0] : likely[-1] + 1]
-        curve = CubicSpline(d, p / (p.sum() * (d[1] - d[0])))
+        curve = CubicSpline(d, p)
         nodes = np.linspace(d[0], d[-1], _NODES)
         rods.places[i] = chain.reduced_anchors[i] + nodes
         rods.density[i], rods.below[i] = curve(nodes), curve.antiderivative()(nodes)
     rods.below[:] /= rods.below[:, -1:]
     # A table may end at a wall, where the density is not 0.
-    weighted = rods.density * between_walls.weights(_NODES)
+    weighted = rods.density * weights(_NODES)
     rods.share[:] = weighted / weighted.sum(axis=1, keepdims=True)
     return rods
 
