@@ -14,12 +14,14 @@ chains on all sides, and in time that of all chains in a range of L (1 - e). It 
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
 
 from crazybilliards.model import Chain
 from crazybilliards.model.warn import warn_user
@@ -72,16 +74,10 @@ def expected(theory: str, chain: Chain) -> Accuracy:
 
     A theory that was never measured has no errors to state.
     """
-    of = {
-        "equilibrium": _of_equilibrium,
-        "force_balance": _of_force_balance,
-        "steady_state": _of_steady_state,
-    }
+    if theory == "equilibrium":
+        return Accuracy(0.0, 0.0, 0.0, 0.0, 0.0, 0.0 if chain.box else math.nan)
+    of = {"force_balance": _of_force_balance, "steady_state": _of_steady_state}
     return of[theory](chain) if theory in of else Accuracy()
-
-
-def _of_equilibrium(chain: Chain) -> Accuracy:
-    return Accuracy(0.0, 0.0, 0.0, 0.0, 0.0, 0.0 if chain.box else math.nan)
 
 
 def _of_force_balance(chain: Chain) -> Accuracy:
@@ -91,7 +87,9 @@ def _of_force_balance(chain: Chain) -> Accuracy:
     if chain.box:
         density = _IN_A_BOX if chain.exchangeable else math.nan
         return Accuracy(velocity_width=0.0, border=0.0, density=density)
-    place = _gap_and_size(chain)
+    if chain.spring != "linear":
+        return Accuracy(velocity_width=0.0, border=0.0)
+    place = {"g/s": chain.lattice_gap / chain.thermal_length, "L": chain.size}
     moved = _around("mean_displacement", place)
     # The density of shorter rods is less wrong, so that of the shortest counts beyond it, too.
     length = min(chain.thermal_length / chain.radius, _SHORTEST)
@@ -106,26 +104,18 @@ def _of_steady_state(chain: Chain) -> Accuracy:
             return Accuracy(velocity_width=0.0, border=0.0)
         return Accuracy(0.0, 0.0, 0.0, 0.0, _OF_THE_GRID, _OF_THE_GRID if chain.box else math.nan)
     kind, place = kind_and_place(chain)
-    measured = [row for row in _rows("steady_state") if row["kind"] == kind]
+    measured = _table("steady_state").query("kind == @kind")
+    if place["e"] <= 1:  # errors fall towards e = 1
+        place["e"] = np.fmin(place["e"], measured.e.max())
     for axis, value in place.items():
-        numbers = [float(row[axis]) for row in measured]
-        if axis == "e" and value <= 1:  # errors fall towards e = 1
-            place[axis] = value = min(value, max(numbers, default=value))
-        if not min(numbers, default=math.inf) * (1 - _SAME) <= value <= max(numbers) * (1 + _SAME):
+        if not _is_inside(value, measured[axis].min(), measured[axis].max()):
             return Accuracy()
-    near = [row for row in measured if _are_near(kind, row, place)]
+    near = measured[_near(measured, place, {**_FACTORS, "x": _FACTORS_OF_X.get(kind, 1.1)})]
+    found = Accuracy(*near[list(Accuracy._fields)].max())
     # Every chain was measured with one s/R, on which its density depends: that of all with such a
     # size and restitution counts.
-    alike = place | dict.fromkeys(("Gamma", "x"), math.nan)
-    densities = [row for row in measured if _are_near(kind, row, alike)] if near else []
-    found = {
-        name: max(
-            (float(row[name]) for row in (densities if name == "density" else near) if row[name]),
-            default=math.nan,
-        )
-        for name in Accuracy._fields
-    }
-    return Accuracy(**found)
+    alike = measured[_near(measured, place, {"L": _FACTORS["L"]})] if len(near) else near
+    return found._replace(density=float(alike.density.max()))
 
 
 def kind_and_place(chain: Chain) -> tuple[str, dict[str, float]]:
@@ -154,17 +144,25 @@ def kind_and_place(chain: Chain) -> tuple[str, dict[str, float]]:
     return kind, {"L": chain.size, "e": chain.restitution, "Gamma": damping, "x": x}
 
 
-def _are_near(kind: str, row: Mapping[str, str], place: Mapping[str, float]) -> bool:
-    factors = _FACTORS | {"x": _FACTORS_OF_X.get(kind, 1.1)}
-    within = all(  # NaN: any
-        not abs(math.log(float(row[axis]) / place[axis])) > math.log(factor)
-        for axis, factor in factors.items()
-    )
-    e, other = float(row["e"]), place["e"]
-    if e >= 1 or other >= 1:
-        return within and (kind == "driven" or abs(e - other) < _SAME)
-    alike = abs(math.log((1 - e) / (1 - other))) <= math.log(_FACTOR_OF_LOSS)
-    return within and alike and abs(e - other) <= _DIFFERENCE
+def _near(
+    rows: pd.DataFrame, place: Mapping[str, float], factors: Mapping[str, float]
+) -> pd.Series[bool]:
+    """Return which rows are within these factors of a place, and have nearly its restitution."""
+    e, away = place["e"], np.abs(rows.e - place["e"])
+    alike = _are_within(_FACTOR_OF_LOSS, 1 - rows.e, 1 - e) & (away <= _DIFFERENCE)
+    near = alike | (away < _SAME) | (e > 1)
+    for axis, factor in factors.items():
+        near &= _are_within(factor, rows[axis], place[axis])
+    return near
+
+
+def _are_within(factor: float, values: pd.Series[float], value: float) -> pd.Series[bool]:
+    return (values <= factor * value) & (value <= factor * values)
+
+
+def _is_inside(value: float, least: float, most: float) -> bool:
+    """Return whether a value lies between two others, but for a small tolerance."""
+    return least - _SAME * abs(least) <= value <= most + _SAME * abs(most)
 
 
 class Release(NamedTuple):
@@ -186,53 +184,34 @@ def expected_in_time(chain: Chain, release: Release | None) -> float:
         return math.nan
     if chain.restitution == 1 and chain.gap == 0 and chain.spring == "linear":
         return 0.0
-    s, W = chain.thermal_length, chain.free_velocity_width
-    place = {
-        "L": float(chain.size),
-        "Gamma": chain.damping * s / (chain.mass * W),
-        "stretch": release.stretch,
-        "shift": release.shift,
-    }
-    inside = all(
-        least - _SAME * abs(least) <= place[axis] <= most * (1 + _SAME)
-        for axis, (least, most) in _IN_TIME.items()
-    )
+    _, place = kind_and_place(chain)
+    place |= {"stretch": release.stretch, "shift": release.shift}
+    inside = all(_is_inside(place[axis], *ends) for axis, ends in _IN_TIME.items())
     if not inside or abs(release.heat - 1) > 2 * _SAME:
         return math.nan
-    numbers = {
-        "g/s": chain.lattice_gap / s,
+    rows = _table("relaxation")
+    fits = rows.n == chain.potential_exponent
+    for axis, value in {
+        "g/s": chain.lattice_gap / chain.thermal_length,
         "L(1-e)": round(chain.size * (1 - chain.restitution), 9),
-    }
-    for row in _rows("relaxation"):
-        inside = all(
-            float(row[f"least {name}"]) <= value <= float(row[f"most {name}"])
-            for name, value in numbers.items()
-        )
-        if inside and int(row["n"]) == chain.potential_exponent:
-            return float(row["error"]) + 2 * float(row["standard error"])
-    return math.nan
-
-
-def _gap_and_size(chain: Chain) -> dict[str, float]:
-    """Return where a chain lies in the table of the force balance; NaN for quadratic springs."""
-    linear = chain.spring == "linear" and min(chain.stiffness, chain.damping, chain.amplitude) > 0
-    gap = chain.lattice_gap / chain.thermal_length if linear else math.nan
-    return {"g/s": gap, "L": chain.size}
+    }.items():
+        fits &= rows[f"least {axis}"].le(value) & rows[f"most {axis}"].ge(value)
+    return float(next(iter((rows.error + 2 * rows["standard error"])[fits]), math.nan))
 
 
 def _around(quantity: str, place: Mapping[str, float]) -> float:
     """Return the largest error of the measured chains on both sides in every number of a place."""
-    rows = [row for row in _rows("force_balance") if row["quantity"] == quantity]
+    rows = _table("force_balance").query("quantity == @quantity")
     for axis, value in place.items():
-        below = [float(row[axis]) for row in rows if float(row[axis]) <= value * (1 + _SAME)]
-        above = [float(row[axis]) for row in rows if float(row[axis]) >= value * (1 - _SAME)]
-        if not (below and above):
+        below = rows[axis][rows[axis] <= value * (1 + _SAME)].max()
+        above = rows[axis][rows[axis] >= value * (1 - _SAME)].min()
+        if math.isnan(below + above):
             return math.nan
-        rows = [row for row in rows if float(row[axis]) in (max(below), min(above))]
-    return max(float(row["error"]) for row in rows)
+        rows = rows[rows[axis].isin((below, above))]
+    return float(rows.error.max())
 
 
 @cache
-def _rows(table: str) -> list[dict[str, str]]:
-    file = files("crazybilliards.kinetic") / "measured" / f"{table}.csv"
-    return list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
+def _table(name: str) -> pd.DataFrame:
+    with (files("crazybilliards.kinetic") / "measured" / f"{name}.csv").open() as file:
+        return pd.read_csv(file)
