@@ -36,6 +36,7 @@ cb.given_start(chain, "a") | position must be numbers, got 'a'
 cb.given_start(chain, chain.anchors, np.datetime64("2020-01-01")) | velocity must be numbers
 cb.given_start(chain, chain.anchors, np.ma.masked_less(range(5), 2)) | velocity must be numbers
 cb.simulate(chain, seed=[1, 2]) | a Generator of numpy...got [1, 2]
+cb.chain_of(foreign) | names no chain
 cb.deviation(foreign, foreign) | not a crazybilliards result
 cb.comparison.fit_arctanh(exact.isel(particle=slice(2))) | fit_arctanh: the result has 2 particles
 cb.comparison.fit_arctanh(exact.isel(particle=slice(None, None, -1))) | must ascend from 1 to 5
@@ -59,7 +60,9 @@ cb.simulate(chain, observe="walls") | 'walls' needs a chain between walls, Chain
 cb.simulate(chain, observe=cb.observers.Density(reach=1e12)) | reach=1e+12 is too large for a grid
 cb.simulate(chain, particles=3) | particles must be a list of numbers, got 3
 cb.simulate(chain, particles=(3, 2)) | particles must ascend
-cb.simulate(chain, replicas=10**12) | would take...GiB of memory
+cb.simulate(chain, replicas=10**12) | would take...GiB of memory, ...GiB are available
+cb.simulate(cb.Chain(amplitude=1e20), observe="density") | would take...GiB of memory
+cb.equilibrium(cb.Chain(size=10, amplitude=1e-9, gap=1.0)) | lost in the rounding of positions
 cb.simulate(chain, start=snapshots) | start is over time; choose one time...isel(time=-1)
 cb.simulate(chain, start=start.isel(replica=0)) | start: position must be over replica and particle
 cb.simulate(chain, start=run) | start must be a result with position and velocity

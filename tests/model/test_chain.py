@@ -38,13 +38,6 @@ def test_zero_amplitude_damping_and_stiffness_are_chains_without_a_steady_state(
     assert Chain(amplitude=0, damping=0).temperature == 0
 
 
-def test_is_frozen_and_replace_checks():
-    with pytest.raises(AttributeError):
-        Chain().gap = 1
-    with pytest.raises(ValueError, match="gap must be"):
-        Chain().replace(gap=-1)
-
-
 def test_scales_of_the_reference_chain():
     chain = Chain()
     assert chain.temperature == pytest.approx(0.5)
@@ -65,15 +58,9 @@ def test_reduced_and_physical_coordinates_are_inverse(size, gap, radius):
     np.testing.assert_allclose(chain.anchors, -chain.anchors[::-1])
 
 
-@pytest.mark.parametrize(
-    ("places", "found"),
-    [(1, [0]), (2, [0, 1]), (3, [1]), (10, [4, 5]), (30, [13, 14, 15, 16]), (99, range(45, 54))],
-)
-def test_the_middle_tenth_is_in_the_middle(places, found):
-    assert [*range(places)[middle_tenth(places)]] == [*found]
-
-
 def test_the_middle_tenth_is_within_a_twentieth_of_the_middle():
+    """Of few places it is the one or two in the middle."""
+    assert [middle_tenth(places) for places in (1, 2, 3)] == [slice(0, 1), slice(0, 2), slice(1, 2)]
     for places in range(10, 2001):
         off = np.abs(Chain(size=places).rank)
         taken = np.zeros(places, dtype=bool)
@@ -92,16 +79,12 @@ def derivative(function, d):
 
 
 @pytest.mark.parametrize("exponent", [2, 3])
-def test_force_and_stiffness_are_derivatives(exponent):
+def test_force_and_stiffness_are_derivatives_and_displacement_is_the_inverse(exponent):
     force = derivative(lambda d: spring.potential(d, exponent), D)
     np.testing.assert_allclose(spring.force(D, exponent), force, rtol=1e-7)
     stiffness = derivative(lambda d: spring.force(d, exponent), D)
     np.testing.assert_allclose(spring.stiffness(D, exponent), stiffness, rtol=1e-7)
     assert spring.potential(0.0, exponent) == spring.force(0.0, exponent) == 0
-
-
-@pytest.mark.parametrize("exponent", [2, 3])
-def test_displacement_is_the_inverse_of_the_force(exponent):
     np.testing.assert_allclose(spring.displacement(spring.force(D, exponent), exponent), D)
 
 
@@ -134,22 +117,15 @@ def test_the_grid_is_symmetric_odd_per_rod_and_wide_enough(amplitude, size, gap)
     assert x.size <= 2**18 + 4
 
 
-def deposit_slowly(points, nodes):
-    """Twin of the kernel: every node's hat function at every point."""
-    h = nodes[1] - nodes[0]
-    return np.maximum(1 - np.abs(points[:, None] - nodes) / h, 0).sum(axis=0)
-
-
 @given(points=st.lists(st.floats(-4.999, 4.999), max_size=30))
-def test_deposit_equals_its_slow_twin(points):
+def test_deposit_equals_the_hat_function_of_every_node_at_every_point(points):
     nodes = np.linspace(-5, 5, 41)
     weights = np.zeros(nodes.size)
     points = np.array(points, dtype=float)
-    assert deposit(points, nodes[0], nodes[1] - nodes[0], weights) == 0
-    np.testing.assert_allclose(weights, deposit_slowly(points, nodes), atol=1e-12)
-    # Hat weights keep the number of points and their centre of mass.
-    assert weights.sum() == pytest.approx(points.size)
-    assert weights @ nodes == pytest.approx(points.sum(), abs=1e-9)
+    h = nodes[1] - nodes[0]
+    assert deposit(points, nodes[0], h, weights) == 0
+    slowly = np.maximum(1 - np.abs(points[:, None] - nodes) / h, 0).sum(axis=0)
+    np.testing.assert_allclose(weights, slowly, atol=1e-12)
 
 
 def test_points_outside_and_nan_are_counted_not_lost():
@@ -157,10 +133,3 @@ def test_points_outside_and_nan_are_counted_not_lost():
     points = np.array([-0.1, 0.0, 5.5, 10.0, 1e300, np.nan, -np.inf])
     assert deposit(points, 0.0, 1.0, weights) == 5
     assert weights.sum() == 2
-
-
-def test_a_grid_that_cannot_be_is_refused():
-    with pytest.raises(ValueError, match="lost in the rounding of positions"):
-        position_grid(Chain(size=10, amplitude=1e-9, gap=1.0))
-    with pytest.raises(ValueError, match=r"would take .* GiB of memory"):
-        position_grid(Chain(amplitude=1e20))

@@ -1,21 +1,18 @@
 """All commands: help at once, one line for a mistake, the parameters of a chain as options."""
 
 import functools
-import inspect
 import pkgutil
 import shlex
 import signal
 import subprocess
 import sys
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
-from typing import get_args
 
 import pytest
 from other_values import other_values
 
-from crazybilliards.apps.commands import options
 from crazybilliards.apps.commands.line import app
 from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.model import Chain, load
@@ -120,13 +117,12 @@ INTERRUPTED = {
 @pytest.mark.compiled
 @pytest.mark.posix
 @pytest.mark.parametrize(
-    ("name", "sent"),
-    [*product(INTERRUPTED, ["SIGINT"]), ("simulate", "SIGTERM"), ("simulate", "SIGHUP")],
+    ("name", "sent"), [*product(INTERRUPTED, ["SIGINT"]), ("simulate", "SIGTERM")]
 )
 def test_a_signal_saves_what_was_computed_beside_a_finished_result(
     name, sent, interrupted, tmp_path, monkeypatch
 ):
-    """Ctrl-C, what batch systems send before they kill, and a lost connection."""
+    """Ctrl-C, and what batch systems send before they kill."""
     monkeypatch.chdir(tmp_path)
     (line, finished, left), number = INTERRUPTED[name], getattr(signal, sent)
     (tmp_path / finished).write_text("finished")
@@ -142,14 +138,7 @@ def test_a_signal_saves_what_was_computed_beside_a_finished_result(
     assert name != "relax" or "rms distance" in done.stdout
 
 
-# What a command chooses itself.
-CHOSEN = {
-    "compare": {"amplitude", "restitution"},
-    "relax": set(),
-    "simulate": set(),
-    "theory": set(),
-}
-OTHER = other_values()
+# What takes the chain of a command.
 TAKES_IT = {
     "compare": "crazybilliards.comparison.side_by_side.grid.compare",
     "relax": "crazybilliards.comparison.side_by_side.relaxation.compare_relaxation",
@@ -158,12 +147,13 @@ TAKES_IT = {
 }
 
 
-@pytest.mark.parametrize("command", CHOSEN)
+@pytest.mark.parametrize("command", TAKES_IT)
 def test_every_parameter_of_a_chain_is_an_option_that_reaches_the_chain(
     refused, command, monkeypatch
 ):
-    asked = {name: value for name, value in OTHER.items() if name not in CHOSEN[command]}
-    chains = []
+    asked, chains = other_values(), []
+    if command == "compare":  # it chooses these itself
+        del asked["amplitude"], asked["restitution"]
 
     @functools.wraps(pkgutil.resolve_name(TAKES_IT[command]))
     def stop(chain, *arguments, **settings):
@@ -177,28 +167,5 @@ def test_every_parameter_of_a_chain_is_an_option_that_reaches_the_chain(
     # use. In the other order monkeypatch would save, and later restore, the replacement.
     monkeypatch.setattr(f"crazybilliards.{room}.{name}", stop)
     monkeypatch.setattr(TAKES_IT[command], stop)
-    options = [f"--{name.replace('_', '-')}={value}" for name, value in asked.items()]
-    refused("far enough", command, *options)
+    refused("far enough", command, *(f"--{n.replace('_', '-')}={v}" for n, v in asked.items()))
     assert chains == [Chain(**asked)]
-
-
-def test_a_new_parameter_of_a_chain_is_an_option_of_itself(monkeypatch):
-    @dataclass(frozen=True, kw_only=True)
-    class More(options.Parameters):
-        tilt: float = field(
-            default=0.5, metadata={"meaning": "Constant force", "unit": "N", "check": float}
-        )
-
-    monkeypatch.setattr(options, "Parameters", More)
-
-    @options.chain_options(size=3)
-    def command(chain: object, *, seed: int = 0):
-        """Do nothing."""
-
-    parameters = inspect.signature(command).parameters
-    assert [*parameters] == [*(each.name for each in fields(More)), "seed"]
-    assert parameters["size"].default == 3
-    assert parameters["tilt"].default == 0.5
-    kind, option = get_args(parameters["tilt"].annotation)
-    assert kind is float
-    assert option.help == "Constant force [N]."
