@@ -26,15 +26,11 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_modifyitems(config, items):
-    """Leave out the torture unless it is asked for; skip what Windows cannot do.
-
-    If tests run in two processes, one of them begins with compiling the kernels. The other begins
-    with theories, which need none.
-    """
-    items.sort(key=_needs_kernels)
+    """Leave out the torture unless it is asked for; skip what Windows cannot do."""
     if "torture" not in " ".join([config.option.markexpr, *config.args]):
-        config.hook.pytest_deselected(items=[each for each in items if _is_torture(each)])
-        items[:] = [each for each in items if not _is_torture(each)]
+        torture = [item for item in items if item.get_closest_marker("torture")]
+        config.hook.pytest_deselected(items=torture)
+        items[:] = [item for item in items if item not in torture]
     if os.name == "nt":
         for item in items:
             if item.get_closest_marker("posix"):
@@ -50,17 +46,6 @@ def pytest_itemcollected(item):
     """Mark what lies in the folder of the torture."""
     if item.path.parent.name == "torture":
         item.add_marker("torture")
-
-
-def _needs_kernels(item):
-    """Sort files: the one that compiles the kernels, those that need none, and the others."""
-    if item.path.name == "test_kernels.py":
-        return 0
-    return 1 if item.path.parent.name == "kinetic" and not hasattr(item.module, "simulate") else 2
-
-
-def _is_torture(item):
-    return item.get_closest_marker("torture") is not None
 
 
 @pytest.fixture

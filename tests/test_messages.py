@@ -4,6 +4,7 @@ import inspect
 import pickle
 import re
 from copy import copy
+from functools import partial
 
 import numpy as np
 import pytest
@@ -16,15 +17,44 @@ from crazybilliards.particles.running.replica import Replica
 from crazybilliards.reproduction import fits
 
 
+class Quantity:
+    """Numbers with a unit, by the name that a library has for it."""
+
+    def __init__(self, values, name):
+        self.values = np.asarray(values, dtype=float)
+        setattr(self, name, "km")
+
+    def __array__(self, dtype=None, copy=None):
+        return self.values
+
+    def __float__(self):
+        return float(self.values)
+
+    def __len__(self):
+        return len(self.values)
+
+    def __getitem__(self, which):
+        return self.values[which]
+
+    def item(self):
+        return self.values.item()
+
+    shape = property(lambda self: self.values.shape)
+
+
 @pytest.fixture(scope="module")
 def names():
     """Return what the calls name."""
     chain = cb.Chain(size=5)
     raw = {"duration": 10, "average": "ensemble", "observe": "snapshots", "progress": False}
-    exact = cb.equilibrium(chain)
+    exact, moved = cb.equilibrium(chain), cb.displaced(chain, 1.0)
     return {
         "cb": cb,
         "np": np,
+        "xr": xr,
+        "km": partial(Quantity, name="unit"),
+        "pint": partial(Quantity, name="units"),
+        "in_metres": moved.assign(density=moved.density.assign_attrs(units="1/m")),
         "fits": fits,
         "GAMMA": GAMMA,
         "chain": chain,
@@ -117,3 +147,12 @@ def test_what_cannot_move_is_warned_of_at_the_line_of_the_user(stiffness):
             cb.simulate(chain, start=start, **settings)
         assert [warning.filename for warning in caught] == [__file__]
     cb.simulate(chain, start=cb.given_start(chain, chain.anchors, 1.0), **settings)
+
+
+def test_units_of_results_are_ones_own(names):
+    chain, last = names["chain"], names["snapshots"].isel(time=-1)
+    for position in (last.position, last.position.assign_attrs(units="R"), last.position.values):
+        again = cb.given_start(chain, position, last.velocity)
+        np.testing.assert_array_equal(again.position, last.position)
+    table = names["exact"].mean_position.values, names["exact"].velocity_width ** 2
+    cb.force_balance(chain, velocity_variance=table)

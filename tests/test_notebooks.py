@@ -179,7 +179,7 @@ def answers_of_the_solutions():
                         yield plain(ast.unparse(node))
 
 
-def test_copies_have_no_outputs_and_no_solutions(tmp_path):
+def test_copies_have_no_outputs_and_no_solutions_and_keep_answers(tmp_path, capsys):
     write_copies(tmp_path)
     assert (tmp_path / "teaching.py").exists()
     assert [path.name for path in sorted(tmp_path.glob("*.ipynb"))] == [p.name for p in NOTEBOOKS]
@@ -197,10 +197,6 @@ def test_copies_have_no_outputs_and_no_solutions(tmp_path):
         assert "Solution</summary>" not in text
         assert not [answer for answer in answers if answer in plain(text)]
         assert not any(cell.get("outputs") or cell.get("execution_count") for cell in copy.cells)
-
-
-def test_copies_keep_answers(tmp_path, capsys):
-    write_copies(tmp_path)
     answered = tmp_path / NOTEBOOKS[0].name
     answered.write_text("answers")
     (tmp_path / NOTEBOOKS[1].name).unlink()

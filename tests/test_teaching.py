@@ -41,14 +41,10 @@ def test_an_answer_is_checked(answer, verdict, capsys):
     ],
 )
 def test_numbers_and_words_are_checked(answer, expected, verdict, capsys):
+    assert right(0.5009, 0.5, tolerance=2e-3)
+    assert not right(0.5011, 0.5, tolerance=2e-3)
     check(answer, expected, hint="half", tolerance=2e-3)
     assert verdict in capsys.readouterr().out
-
-
-def test_a_right_number_is_within_the_tolerance():
-    assert right(0.5004, 0.5, tolerance=1e-3)
-    assert not right(0.5006, 0.5, tolerance=1e-3)
-    assert not right(float("nan"), 1.0)
 
 
 WRONG = [-1.0, 0.0, 1e9, float("nan"), float("inf"), [1.0, 2.0], [[3.0]], "word", range]
@@ -64,6 +60,13 @@ def test_no_wrong_answer_is_told_the_right_one(answer, expected, capsys):
     assert not re.search(r"Right|[.]73|harlequin", printed)
 
 
+@pytest.fixture
+def strict(monkeypatch):
+    """Return a function that makes lessons strict, which they are not before."""
+    monkeypatch.delenv("CRAZYBILLIARDS_LESSONS", raising=False)
+    return lambda: monkeypatch.setenv("CRAZYBILLIARDS_LESSONS", "strict")
+
+
 @pytest.mark.parametrize(
     ("measured", "expected", "error", "verdict"),
     [
@@ -72,8 +75,8 @@ def test_no_wrong_answer_is_told_the_right_one(answer, expected, capsys):
         (np.array([0.0, 1.0]), [0, 1], 0, "0.0 standard errors apart: they agree."),
     ],
 )
-def test_agreement_is_told_in_words(measured, expected, error, verdict, capsys, monkeypatch):
-    monkeypatch.setenv("CRAZYBILLIARDS_LESSONS", "strict")
+def test_agreement_is_told_in_words(measured, expected, error, verdict, capsys, strict):
+    strict()
     agree("x", measured, expected, error, unit="W")
     assert verdict in capsys.readouterr().out
 
@@ -82,17 +85,12 @@ def test_agreement_is_told_in_words(measured, expected, error, verdict, capsys, 
     ("measured", "error", "distance"),
     [(6.0, 1, "6.0"), (1e24, 1, "more than 1000"), (1.0, 0, "more than"), (float("nan"), 1, "nan")],
 )
-def test_disagreement_stops_strict_lessons_only(measured, error, distance, capsys, monkeypatch):
-    monkeypatch.delenv("CRAZYBILLIARDS_LESSONS", raising=False)
+def test_disagreement_stops_strict_lessons_only(measured, error, distance, capsys, strict):
     agree("far", [measured, 0], 0, error)
     assert re.search(rf"{distance}.* apart: they do not agree\.", capsys.readouterr().out)
-    monkeypatch.setenv("CRAZYBILLIARDS_LESSONS", "strict")
-    with pytest.raises(AssertionError, match="far: of 2 values"):
-        agree("far", [measured, 0], 0, error)
-
-
-def test_an_unsafe_change_is_told_in_one_sentence(capsys, monkeypatch):
-    monkeypatch.delenv("CRAZYBILLIARDS_LESSONS", raising=False)
     assert safe(True, "Take damping below 4.")
     assert not safe(False, "Take damping below 4.")
     assert capsys.readouterr().out == "Take damping below 4.\n"
+    strict()
+    with pytest.raises(AssertionError, match="far: of 2 values"):
+        agree("far", [measured, 0], 0, error)

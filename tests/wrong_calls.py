@@ -89,6 +89,24 @@ cb.comparison.fit_arctanh(walls) | fit_arctanh does not know the chain's box
 cb.comparison.fit_border_power_law(walls) | fit_border_power_law does not know the chain's box
 """
 
+# numpy would drop the unit of another library without a word: ``km`` is like those of astropy,
+# ``pint`` like those of pint and unyt.
+UNITS = """
+cb.given_start(chain, km(chain.anchors)) | position must be plain numbers
+cb.given_start(chain, [pint(each) for each in chain.anchors]) | position must be plain numbers
+cb.given_start(chain, np.array([km(1.0)] * 5, dtype=object)) | position must be plain numbers
+cb.given_start(chain, xr.DataArray(chain.anchors, attrs={"units": "km"})) | position must be plain
+cb.Chain(radius=km(3.0)) | radius must be plain numbers
+cb.Chain(size=pint(3)) | size must be plain numbers
+chain.reduced(pint(chain.anchors)) | x must be plain numbers
+chain.force(km(chain.anchors)) | displacement must be plain numbers
+cb.force_balance(chain, displacement=(pint(chain.anchors), chain.anchors)) | must be plain numbers
+cb.force_balance(chain, displacement=lambda x: km(x)) | displacement must be plain numbers
+cb.force_balance(chain, velocity_variance=pint(3.0)) | velocity_variance must be plain numbers
+cb.hydrodynamics(chain, in_metres, 1.0) | start: density must be plain numbers
+fits.fit_exponential([0.1, 0.5, 0.9], [1.0, 2.0, 4.0], [0.1] * 3)(km([0.1, 0.2])) | x must be plain
+"""
+
 THEORIES = """
 cb.equilibrium_states(chain.replace(restitution=0.8), 4) | chain.replace(restitution=1)
 cb.equilibrium(walled.replace(wall_restitution=0.5)) | elastic walls only
@@ -145,7 +163,7 @@ cb.film(snapshots, duration=5) | duration is that of a chain to simulate
 
 WRONG_CALLS = [
     line.split(" | ")
-    for table in (NAMES, VALUES, RUNS, UNKNOWN, THEORIES, PICTURES)
+    for table in (NAMES, VALUES, RUNS, UNKNOWN, UNITS, THEORIES, PICTURES)
     for line in table.strip().splitlines()
 ]
 

@@ -56,13 +56,6 @@ HOLDS = "return ChainPhysics.position(ChainRunning.world.state, 0) / ChainDrawin
 HOLDS += "ChainRunning.world.state.chain) * arguments[0].clientWidth / 2"
 
 
-def begin(browser, address, process):
-    """Open the page, where a push, a judgement or a theory is under way."""
-    challenge = "ends" if "judging" in process else "push"
-    visit(browser, f"{address}#challenge={challenge}", quiet=True)
-    assert browser.execute_script(f"{FIND} {BEGIN[process]} return {GOES_ON[process]}")
-
-
 @pytest.mark.parametrize("process", GOES_ON)
 def test_every_control_that_breaks_something_off_says_so_and_why(browser, address, process):
     """On a short chain, where a push, a judgement or a theory soon begins."""
@@ -84,9 +77,10 @@ def test_every_control_that_breaks_something_off_says_so_and_why(browser, addres
     assert errors(browser) == []
 
 
-@pytest.mark.parametrize("process", list(GOES_ON)[:2])
-def test_a_hand_breaks_off_what_the_rods_do(browser, address, process):
-    begin(browser, address, process)
+def test_a_hand_an_address_and_a_chain_that_runs_away_break_off_a_push(browser, address):
+    process = "the push under way"
+    visit(browser, f"{address}#challenge=push", quiet=True)
+    browser.execute_script(f"{FIND} {BEGIN[process]}")
     stage = control(browser, "stage")
     hand = ActionBuilder(browser, duration=0)
     hand.pointer_action.move_to(stage, int(browser.execute_script(HOLDS, stage)), -54)
@@ -95,17 +89,14 @@ def test_a_hand_breaks_off_what_the_rods_do(browser, address, process):
     assert text(browser, "note") == f"A rod was held, which broke off {process}."
     assert "clearly" not in rows(browser, 2000)  # no verdict on a rod in a hand
     hand.clear_actions()
-
-
-def test_an_address_and_a_chain_that_runs_away_break_off_a_push(browser, address):
-    begin(browser, address, "the push under way")
+    press(browser, control(browser, "push"))
     turn(browser, "#size=20")
-    assert text(browser, "note") == "A chain was begun anew, which broke off the push under way."
+    assert text(browser, "note") == f"A chain was begun anew, which broke off {process}."
     slide(browser, restitution=1.1, size=200, damping=0.1)
     press(browser, control(browser, "push"))
     rows(browser, 4000)
     assert "has run away" in text(browser, "status")
-    assert text(browser, "note") == "The chain ran away, which broke off the push under way."
+    assert text(browser, "note") == f"The chain ran away, which broke off {process}."
 
 
 def test_what_is_counted_or_known_is_not_broken_off(browser, address):

@@ -80,7 +80,7 @@ def run(script, runs):
     return json.loads(done.stdout)
 
 
-@pytest.mark.parametrize(("script", "runs"), [(EQUAL, 600), (PUSHES, 200), (GASES, 400)])
+@pytest.mark.parametrize(("script", "runs"), [(EQUAL, 300), (PUSHES, 100), (GASES, 200)])
 def test_fewer_than_one_verdict_in_a_hundred_is_wrong(script, runs):
     """Were one in a hundred wrong, half of the runs' expected number would be rare."""
     assert run(script, runs) <= 0.01 * runs

@@ -1,8 +1,10 @@
-"""Who may open the page of ``crazybilliards explore``, and what is refused."""
+"""Who may open the page of ``crazybilliards explore``, and which theories its server solves."""
 
+import re
 import socket
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from http.client import HTTPConnection
 
 import psutil
@@ -11,6 +13,7 @@ from browser import COMMAND, until
 
 from crazybilliards.apps.explore import theory
 from crazybilliards.apps.explore.server import serve
+from crazybilliards.comparison.stationary_theories import THEORIES
 
 THEORY = {"X-Requested-With": "chain", "Sec-Fetch-Site": "same-origin"}
 
@@ -92,6 +95,39 @@ def test_theories_are_for_the_page_alone(address, headers):
 @pytest.mark.parametrize("query", ["size=x", "size=201", "size=", "os=1", "radius=2"])
 def test_no_theory_is_solved_of_what_is_no_chain_of_the_page(query):
     assert list(theory.answer(query)) == ["refused"]
+
+
+def require_words(answer, said):
+    """Check that a class understands why there is no theory."""
+    assert answer["refused"].startswith(said)
+    assert not re.search(r"--|_|\bcells\b|Python|simulate|iteration", answer["refused"])
+
+
+@pytest.mark.parametrize(
+    ("chain", "said"),
+    [
+        ("size=40&restitution=1.05", "by the theory its energy grows without bound"),
+        ("size=40&restitution=1.05&amplitude=0", "without noise there is no steady"),
+        ("size=20&restitution=1.02", None),
+        ("size=30&restitution=0&damping=0.3&gap=0.5", None),
+        ("size=1&restitution=0.9&spring=quadratic", None),
+    ],
+)
+def test_energy_grows_only_if_the_solver_has_found_so(chain, said):
+    answer = theory.answer(chain)
+    assert list(answer) == (["refused"] if said else ["best"])
+    if said:
+        require_words(answer, said)
+
+
+def test_what_could_not_be_solved_is_not_said_to_run_away(monkeypatch):
+    def fail(chain):
+        raise ValueError("no agreement after 60 iterations")
+
+    failing = replace(THEORIES["steady_state"], solve=fail)
+    monkeypatch.setitem(THEORIES, "steady_state", failing)
+    said = "its equations could not be solved for this chain; fewer rods"
+    require_words(theory.answer("restitution=1.05&gap=0.5"), said)
 
 
 def test_a_body_is_no_second_request(address):

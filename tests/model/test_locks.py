@@ -3,7 +3,7 @@
 import signal
 import subprocess
 import sys
-import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -40,20 +40,9 @@ def test_a_lock_is_held_until_its_process_ends_however_it_ends(name, tmp_path):
 
 
 def test_another_thread_is_refused_as_well(tmp_path):
-    refused = []
-
-    def work():
-        try:
-            with locked(tmp_path):
-                pass
-        except BlockingIOError as error:
-            refused.append(error)
-
-    with locked(tmp_path):
-        thread = threading.Thread(target=work)
-        thread.start()
-        thread.join()
-    assert len(refused) == 1
+    with locked(tmp_path), ThreadPoolExecutor(1) as thread:
+        refused = thread.submit(locked(tmp_path).__enter__).exception()
+    assert isinstance(refused, BlockingIOError)
 
 
 CONTENDER = """

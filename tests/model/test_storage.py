@@ -1,7 +1,7 @@
 """Files: what is saved comes back, what is damaged is refused in one line."""
 
-import ast
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -81,23 +81,15 @@ def test_foreign_files_are_refused(dataset, tmp_path):
         load(tmp_path / "missing.nc")
 
 
-FORBIDDEN = {"pickle", "cPickle", "dill", "cloudpickle", "joblib", "shelve", "marshal"}
-
-
 def test_the_package_unpickles_nothing():
     """A pickle runs whatever it says."""
+    modules = "pickle|cPickle|dill|cloudpickle|joblib|shelve|marshal"
+    wrong = re.compile(
+        rf"\b(import|from) ({modules})\b|(?<![.\w])(eval|exec|compile)\(|read_pickle|"
+        r"np\.load\((?!.*allow_pickle=False)"
+    )
     root = Path(load.__code__.co_filename).parents[1]
     rooms = ("model", "particles", "kinetic", "comparison")
     sources = [path for room in rooms for path in (root / room).rglob("*.py")]
     assert len(sources) > 100
-    for path in sources:
-        for node in ast.walk(ast.parse(path.read_text())):
-            names = {each.name for each in node.names} if isinstance(node, ast.Import) else set()
-            names |= {node.module or ""} if isinstance(node, ast.ImportFrom) else set()
-            assert not {name.split(".")[0] for name in names} & FORBIDDEN, path
-            if isinstance(node, ast.Call):
-                called = ast.unparse(node.func)
-                assert called not in ("eval", "exec", "compile", "pd.read_pickle"), path
-                if called == "np.load":
-                    given = {each.arg: ast.unparse(each.value) for each in node.keywords}
-                    assert given.get("allow_pickle") == "False", path
+    assert not [path for path in sources if wrong.search(path.read_text())]
