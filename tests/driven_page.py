@@ -19,9 +19,14 @@ return [element.contains(document.elementFromPoint(x, y)),
   ['stage', 'second'].every((name) => shown(document.querySelector(`[data-chain=${name}]`)))];
 """
 
-# All controls, and how a script of the page uses one: with the events that a hand causes.
+# All controls, and how a script of the page uses one: with the events that a hand causes. It turns
+# to another address as a link does, but in a third of the time.
 ALL = "document.querySelectorAll('.chain :is(button, select, input)')"
 USE = """
+function turn(hash) {
+  history.replaceState(null, '', hash);
+  dispatchEvent(new Event('hashchange'));
+}
 function use(control, entry = null) {
   if (control.tagName === 'BUTTON') return control.click();
   if (entry) control.value = entry.value;

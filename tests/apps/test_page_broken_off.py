@@ -32,25 +32,19 @@ const click = (name) => find(name).click(), said = (name) => find(name).textCont
 # Of each control that is seen: its name, that of its slider, whether all went on before it was
 # used, and after it, and what the page then said. It comes back to its address before each.
 EVERYTHING = """
-const [left, elsewhere, done] = arguments, found = [], beginning = location.hash;
-const turn = (hash) => new Promise((turned) => {
-  addEventListener('hashchange', turned, {once: true});
-  location.hash = hash;
-});
-(async () => {
-  const shown = Array.from(ALL).filter((control) => control.checkVisibility());
-  for (const control of shown) {
-    const name = control.dataset.chain ?? control.ariaLabel;
-    if (left.includes(name)) continue;
-    await turn(elsewhere);
-    await turn(beginning);
-    begin();
-    const began = goesOn();
-    use(control);
-    const label = control.closest('.slider')?.querySelector('label').textContent ?? '';
-    found.push([name, label.split(' [')[0], began, goesOn(), said('note')]);
-  }
-})().then(() => done(found), (error) => done(String(error.stack)));
+const [left, elsewhere] = arguments, found = [], beginning = location.hash;
+for (const control of Array.from(ALL).filter((control) => control.checkVisibility())) {
+  const name = control.dataset.chain ?? control.ariaLabel;
+  if (left.includes(name)) continue;
+  turn(elsewhere);
+  turn(beginning);
+  begin();
+  const began = goesOn();
+  use(control);
+  const label = control.closest('.slider')?.querySelector('label').textContent ?? '';
+  found.push([name, label.split(' [')[0], began, goesOn(), said('note')]);
+}
+return found;
 """
 HOLDS = "return ChainPhysics.position(ChainRunning.world.state, 0) / ChainDrawing.reach("
 HOLDS += "ChainRunning.world.state.chain) * arguments[0].clientWidth / 2"
@@ -64,7 +58,7 @@ def test_every_control_that_breaks_something_off_says_so_and_why(browser, addres
     script = f"{FIND} {USE} const ALL = {ALL}, goesOn = () => {GOES_ON[process]};"
     script += f"const begin = () => {{ {BEGIN[process]} }}; {EVERYTHING}"
     left = ["save", "solve", "step"]
-    uses = browser.execute_async_script(script, left, "#size=3&restitution=0.5&speed=30")
+    uses = browser.execute_script(script, left, "#size=3&restitution=0.5&speed=30")
     assert all(began for _, _, began, _, _ in uses)
     assert sum(not goes_on for *_, goes_on, _ in uses) >= 18
     for name, label, _, goes_on, note in uses:

@@ -4,6 +4,7 @@ from dataclasses import asdict
 
 import numpy as np
 import pytest
+from driven_page import visit
 
 import crazybilliards as cb
 from crazybilliards.comparison.coverage import coverage_density
@@ -58,8 +59,7 @@ return [squares, shares, world.measurement.coverage().map(([x]) => x)];
 
 @pytest.fixture(scope="module")
 def page(browser, address):
-    browser.get(address)
-    browser.find_element("css selector", "[data-chain=play]").click()
+    visit(browser, address, quiet=True)
     return browser
 
 
@@ -87,8 +87,8 @@ def test_steps_are_those_of_the_package_under_the_same_noise(page, e, amplitude,
     np.testing.assert_allclose([found_y, found_v], [y, v], atol=1e-9)
 
 
-@pytest.mark.parametrize("e", [0.0, 0.1, 0.7, 1.0, 1.05])
-@pytest.mark.parametrize("damping", [0.1, 3.0, 2 * (4 * np.pi / 3) ** 0.5, 10.0])
+@pytest.mark.parametrize("e", [0.1, 0.7, 1.0, 1.05])
+@pytest.mark.parametrize("damping", [0.1, 2 * (4 * np.pi / 3) ** 0.5, 10.0])
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
 @pytest.mark.parametrize(("gap", "duration"), [(0.0, 0.005), (0.5, 0.5), (0.5, 30.0)])
 def test_scales_and_steps_have_the_numbers_of_the_package(page, e, damping, spring, gap, duration):
@@ -121,7 +121,7 @@ def test_noise_is_normal_and_white(page):
 
 
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
-@pytest.mark.parametrize("amplitude", [1.0, 2.0, 4.0, 10.0])
+@pytest.mark.parametrize("amplitude", [1.0, 10.0])
 @pytest.mark.parametrize(("size", "gap"), [(10, 0.0), (20, 0.5), (60, 0.0), (30, 3.0)])
 def test_the_exact_density_is_that_of_equilibrium(page, size, gap, amplitude, spring):
     """The package's is the mean over each of its bins, and its average over 2R is smooth."""
@@ -139,11 +139,9 @@ def test_the_exact_density_is_that_of_equilibrium(page, size, gap, amplitude, sp
     assert np.abs(np.array(found) - density).max() < 1e-3
 
 
-@pytest.mark.parametrize(
-    ("size", "gap", "spring"), [(20, 0.5, "linear"), (10, 0.0, "linear"), (10, 0.2, "quadratic")]
-)
-def test_widths_and_density_are_exact_at_restitution_one(page, size, gap, spring):
-    chain = cb.Chain(size=size, damping=0.5, gap=gap, spring=spring)
+@pytest.mark.parametrize(("gap", "spring"), [(0.0, "linear"), (0.2, "quadratic")])
+def test_widths_and_density_are_exact_at_restitution_one(page, gap, spring):
+    chain = cb.Chain(size=10, damping=0.5, gap=gap, spring=spring)
     squares, shares, places = page.execute_script(MEASURE, asdict(chain), 64, 200)
     exact = np.array(page.execute_script(COVERED, asdict(chain), places)[0])
     seen = (exact > 0.01) & (exact < 0.99)
