@@ -21,8 +21,17 @@ import pytest
 from installation import FOLDERS, ROOT, TRY, run
 from readme_renderer import markdown
 
-torture = pytest.mark.torture
 PIP = (sys.executable, "-m", "pip")
+BUILD = """
+import os, shutil, sys
+import setuptools.build_meta as build
+there = sys.argv[1]
+shutil.unpack_archive(os.path.join(there, build.build_sdist(there)), "unpacked")
+[folder] = os.listdir("unpacked")
+os.chdir(os.path.join("unpacked", folder))
+build.build_wheel(there)
+"""
+PACKAGES = "import sysconfig; print(sysconfig.get_path('purelib'))"
 QUIET = ("--quiet", "--no-deps", "--disable-pip-version-check")
 
 
@@ -35,19 +44,14 @@ def installed(tmp_path_factory):
     for file in ("pyproject.toml", "docs/package_index.md", "LICENSE"):
         (source / file).parent.mkdir(exist_ok=True)
         copy(ROOT / file, source / file)
-    build = f"import setuptools.build_meta as build; build.build_sdist({str(there)!r})"
-    run(sys.executable, "-c", build, cwd=source)
-    [archive] = there.glob("*.tar.gz")
-    run(*PIP, "wheel", *QUIET, "--no-build-isolation", "--wheel-dir", there, archive)
+    run(sys.executable, "-c", BUILD, there, cwd=source)
     run(sys.executable, "-m", "venv", "--without-pip", there / "venv")
     binaries = there / "venv" / ("Scripts" if os.name == "nt" else "bin")
-    python = binaries / "python"
-    where = "import sysconfig; print(sysconfig.get_path('purelib'))"
-    packages = Path(run(python, "-c", where).stdout.strip())
+    packages = Path(run(binaries / "python", "-c", PACKAGES).stdout.strip())
     borrowed = [path for path in sys.path if path.endswith("-packages")]
     (packages / "borrowed.pth").write_text("\n".join(borrowed), encoding="utf-8")
     [wheel] = there.glob("*.whl")
-    run(*PIP, "--python", python, "install", *QUIET, "--no-index", wheel)
+    run(*PIP, "--python", binaries / "python", "install", *QUIET, "--no-index", wheel)
     return wheel, binaries
 
 
@@ -169,7 +173,7 @@ def nowhere(folder):
     return kept | home | {"MPLCONFIGDIR": str(folder)}
 
 
-@torture
+@pytest.mark.torture
 def test_a_user_who_may_write_nowhere_else_gets_results_and_one_warning(command, nobody):
     become, folder = nobody
     done = run(*become, command, *RUN, cwd=folder, env=nowhere(folder))

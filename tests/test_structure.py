@@ -3,13 +3,11 @@
 import ast
 import doctest
 import graphlib
-import inspect
 import pydoc
 import sys
 import tomllib
 from importlib import import_module
 from importlib.metadata import version
-from pathlib import Path
 
 import architecture
 import pytest
@@ -83,7 +81,8 @@ def test_nothing_imports_in_a_circle(room):
 
 
 def test_nothing_is_named_like_its_module():
-    """Importing the module would hide the function or class behind it."""
+    """Importing the module would hide the function or class behind it, and so would a folder."""
+    assert not (ROOT / "crazybilliards").exists()
     for name, path in MODULES.items():
         body = ast.parse(path.read_text(encoding="utf-8")).body
         assert name.split(".")[-1] not in {getattr(node, "name", "") for node in body}, path
@@ -140,18 +139,6 @@ def test_an_old_name_says_where_it_is(name):
         getattr(cb, name)
     place = str(caught.value).partition(" is ")[2]
     assert place.startswith("gone: ") or eval(place).__name__ == name
-
-
-@pytest.mark.parametrize("name", ["crazybilliards", *PUBLIC[:-1]])
-def test_a_public_name_is_no_module(name):
-    """Importing a module of that name would put it in the place of the function."""
-    assert not (ROOT / "crazybilliards").exists()  # which would shadow the package
-    package = import_module(name)
-    for public in package.__all__:
-        if inspect.ismodule(getattr(package, public)):
-            continue
-        for end in ("", ".py"):
-            assert not any(Path(folder, public + end).exists() for folder in package.__path__)
 
 
 def test_the_import_is_quick():
