@@ -80,6 +80,5 @@ def test_the_correlation_length_is_that_of_the_spectrum(length):
     assert 0.001 * length < neighbours.correlation_length(noisy).error < 0.05 * length
 
 
-@pytest.mark.parametrize("spacing", [0.2, 2.0])
-def test_the_table_of_a_gap_is_that_of_the_elastic_lattice(spacing):
-    assert elastic_lattice.variance(spacing) == pytest.approx(VARIANCES[spacing], abs=1e-4)
+def test_the_table_of_a_gap_is_that_of_the_elastic_lattice():
+    assert elastic_lattice.variance(2.0) == pytest.approx(VARIANCES[2.0], abs=1e-4)

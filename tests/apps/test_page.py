@@ -118,9 +118,10 @@ def test_every_preset_is_seen_by_everybody_and_fits(browser, address, screen):
         assert "?" in text(browser, "ask")
         assert text(browser, "answer") == ""
         rows(browser, 20)
-        assert min(browser.execute_script(DRAWN)) > 5000
         if screen == "wide":
             assert browser.execute_script(SEEN, control(browser, "stage"), "nearest")[1]
+        else:
+            assert min(browser.execute_script(DRAWN)) > 5000
         press(browser, control(browser, "reveal"), "keys")
         assert len(text(browser, "answer")) > 50
     assert browser.execute_script("return document.body.scrollWidth") <= SCREENS[screen][0]
@@ -252,7 +253,6 @@ def test_the_rods_are_saved_as_a_picture(browser, address, tmp_path):
     [
         (1, [({"restitution": 1}, "= 1: it arr"), ({"restitution": 0.9}, "= 0.9: it does not")]),
         (2, [({"size": 15, "restitution": 1.05}, "times"), ({"damping": 0.2}, "than .* 6.1 rods")]),
-        (3, [({}, "clearly below 3"), ({"size": 60, "restitution": 0.5}, "clearly above 3")]),
     ],
 )
 def test_a_challenge_is_solved_by_its_sliders_and_then_answered(browser, address, number, moves):
