@@ -54,7 +54,6 @@ class Units:
             number=0.1 * self.of("R^2/t_0^2"),
             length=self.length,
             times={"duration": 2 * self.time, "every": self.time},
-            fluid={"cells": 160},
             run={"duration": 200 * self.time},
             warmup=5 * self.time,
         )
