@@ -90,13 +90,6 @@ def drifted(
     return Drifted(y, v, collisions, *counted, clusters, masses, anchors, law)
 
 
-def mirrored(state, around):
-    """Return the mirror image of rods and of what is round them."""
-    y, v = (np.array(each, dtype=float) for each in state)
-    masses = around.masses if y.size % 2 else around.masses[::-1]
-    return (-y[::-1], -v[::-1]), around._replace(masses=masses)
-
-
 def require_kept(operator, state, dt, e, **around_it):
     """Order, room, momentum and centre of mass for all laws; energy and impulses as promised."""
     y, v = (np.array(each, dtype=float) for each in state)

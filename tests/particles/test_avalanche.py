@@ -81,23 +81,11 @@ def test_waves_are_counted_like_the_slow_twins(size, seed, number):
     np.testing.assert_array_equal(tally.triggered.sizes, triggered)
 
 
-def test_the_papers_first_hit_needs_no_momentum_to_the_right():
-    tally = everything(4)
-    record_collision(0, 0, 1, 0.5, -1.0, tally)  # 0 hits 1, the momentum points left
-    record_collision(1, 1, 2, 1.0, 0.0, tally)  # 1 hits 2: one triggered collision
-    record_collision(2, 2, 3, 0.0, -1.0, tally)  # interrupted
-    assert tally.triggered.sizes[0].tolist() == [0, 1, 0, 0]
-    assert tally.pushes.sizes[0].sum() == 0
-    assert tally.pushes.sizes[1].tolist() == [1, 0, 0, 0]
-
-
 @pytest.mark.compiled
 def test_both_counts_are_taken_in_one_run():
     """Elastic rods never stick: the counts differ by the first hits only."""
     options = {"duration": 300, "seed": 4, "progress": False}
     both = simulate(Chain(size=8), observe=["avalanches", "triggered-collisions"], **options)
-    alone = simulate(Chain(size=8), observe="triggered-collisions", **options)
-    np.testing.assert_array_equal(both.triggered_count, alone.triggered_count)
     hits, waves = both.triggered_count, both.avalanche_count
     assert both.triggered_collisions.values.tolist() == list(range(8))
     assert both.avalanche_size.values.tolist() == list(range(1, 9))
@@ -110,12 +98,19 @@ def test_both_counts_are_taken_in_one_run():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("size", [2, 10])
-def test_elastic_rods_meet_with_the_speeds_of_gaussian_processes(size):
-    """Rice: the speed w of a crossing has the density w exp(-w^2/4 W^2)/2 W^2."""
-    chain = Chain(size=size)
-    how = {"duration": 1000, "observe": cb.observers.Impacts(bins=40), "progress": False}
-    runs = [simulate(chain, seed=seed, **how) for seed in range(32)]
+def test_elastic_rods_meet_with_the_speeds_of_gaussian_processes():
+    """Rice: the speed w of a crossing has the density w exp(-w^2/4 W^2)/2 W^2.
+
+    Each of the L(L-1)/2 pairs of relabelled points meets w0/pi times a time unit.
+    """
+    chain = Chain(size=10)
+    observe = [cb.observers.Impacts(bins=40), "collisions"]
+    how = {"duration": 300, "observe": observe, "progress": False}
+    runs = [simulate(chain, seed=seed, **how) for seed in range(20)]
+    rates = np.array([float(run.collision_rate.sum()) for run in runs])
+    expected = 45 * math.sqrt(chain.stiffness / chain.mass) / math.pi
+    error = rates.std(ddof=1) / math.sqrt(len(runs))
+    assert abs(rates.mean() - expected) < 5 * error < 0.02 * expected
     [speed] = {tuple(run.impact_speed.values) for run in runs}
     edges = np.sinh(np.linspace(0, np.arcsinh(20_000), 41)) * 0.05 * chain.free_velocity_width
     np.testing.assert_allclose(speed, (edges[1:] + edges[:-1]) / 2)

@@ -4,13 +4,11 @@ import math
 
 import numpy as np
 import pytest
-import xarray as xr
-from scipy.stats import beta
 
-from crazybilliards.kinetic import equilibrium, equilibrium_states
+from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
-from crazybilliards.particles import relaxation_time, simulate
-from crazybilliards.particles.scales import centre_width, default_time_step
+from crazybilliards.particles import given_start, relaxation_time, simulate
+from crazybilliards.particles.scales import centre_width
 
 ROOM = 20.0
 
@@ -29,43 +27,31 @@ def pulls(run, exact, *names):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("time_step", [0.1, 1.0, 30.0])
-def test_without_springs_the_steady_state_is_exact_at_any_step(time_step):
-    chain = gas(5)
-    run = simulate(
-        chain, duration=3e5 * min(time_step, 1), time_step=time_step, every=max(time_step, 1)
-    )
-    off = pulls(run, equilibrium(chain), "mean_displacement", "displacement_width")
-    assert np.abs(off).max() < 5
-    assert np.abs(pulls(run, equilibrium(chain), "velocity_width")).max() < 5
-    assert (run.attrs["flight"], run.attrs["time_step_error"]) == ("exact", 0.0)
-
-
-@pytest.mark.compiled
 @pytest.mark.parametrize(
-    ("size", "time_step"), [(1, 1.0), pytest.param(50, 0.2, marks=pytest.mark.validate), (50, 30.0)]
+    ("size", "time_step", "duration"), [(1, 1.0, 3e5), (5, 0.1, 5e4), (50, 30.0, 3e6)]
 )
-def test_the_pressure_is_that_of_points_at_any_step(size, time_step):
+def test_without_springs_the_steady_state_is_exact_at_any_step(size, time_step, duration):
     chain = gas(size, damping=0.5)
-    run = simulate(
-        chain, duration=1e6, time_step=time_step, every=max(time_step, 1.0), observe="walls"
-    )
-    assert (np.abs(run.wall_force - size / ROOM) < 5 * run.wall_force_error).all()
-    assert (run.wall_force_error < 0.02 * run.wall_force).all()
+    how = {"duration": duration, "time_step": time_step, "every": max(time_step, 1.0)}
+    run, walls = (simulate(chain, observe=observe, **how) for observe in ("widths", "walls"))
+    names = ("mean_displacement", "displacement_width", "velocity_width")
+    assert np.abs(pulls(run, equilibrium(chain), *names)).max() < 5
+    assert (run.attrs["flight"], run.attrs["time_step_error"]) == ("exact", 0.0)
     rate = size / ROOM / math.sqrt(2 * math.pi)
-    assert (np.abs(run.wall_collision_rate - rate) < 5 * run.wall_collision_rate_error).all()
+    assert (np.abs(walls.wall_force - size / ROOM) < 5 * walls.wall_force_error).all()
+    assert (np.abs(walls.wall_collision_rate - rate) < 5 * walls.wall_collision_rate_error).all()
+    assert (walls.wall_force_error < 0.03 * size / ROOM).all()
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("time_step", [pytest.param(0.1, marks=pytest.mark.validate), 0.8])
-def test_on_linear_springs_the_steady_state_is_exact_at_any_step(time_step):
+def test_on_linear_springs_the_steady_state_is_exact_at_a_long_step():
     chain = gas(5, room=2.0, stiffness=1, amplitude=3, damping=0.5)
     exact = equilibrium(chain)
     observe = ["widths", "walls"]
-    run = simulate(chain, duration=2e6 * time_step, time_step=time_step, every=0.8, observe=observe)
+    run = simulate(chain, duration=5e5, time_step=0.8, every=0.8, observe=observe)
     names = ("mean_displacement", "displacement_width", "velocity_width", "wall_force")
     assert np.abs(pulls(run, exact, *names)).max() < 5
-    assert (run.wall_force_error < 0.005 * run.wall_force).all()
+    assert (run.wall_force_error < 0.01 * run.wall_force).all()
 
 
 @pytest.mark.compiled
@@ -80,29 +66,22 @@ def test_on_linear_springs_the_steady_state_is_exact_at_any_step(time_step):
 )
 def test_what_moves_in_steps_has_the_exact_pressure_too(parameters):
     chain = gas(6, room=3.0, **{"stiffness": 1, "amplitude": 2, **parameters})
-    run = simulate(chain, duration=6e4, observe=["widths", "walls"])
+    run = simulate(chain, duration=3e4, observe=["widths", "walls"])
     names = ("mean_displacement", "displacement_width", "velocity_width", "wall_force")
     assert np.abs(pulls(run, equilibrium(chain), *names)).max() < 5
     assert run.attrs["time_step_error"] < 1e-3
 
 
-def started(chain, y, v):
-    """Return a start from reduced positions and velocities, shape (replica, particle)."""
-    x = y + 2 * chain.radius * chain.rank
-    dims = ("replica", "particle")
-    return xr.Dataset({"position": (dims, x), "velocity": (dims, v)})
-
-
 @pytest.mark.compiled
-@pytest.mark.parametrize("damping", [0.0, 0.05])
-@pytest.mark.parametrize("time_step", [5.0, 0.7])
+@pytest.mark.parametrize(("damping", "time_step"), [(0.0, 5.0), (0.05, 0.7)])
 def test_a_gas_released_from_one_half_fills_the_box_as_its_points_do(damping, time_step):
     """The share beyond the middle, 1/2 - sum over odd q of (2/(pi q))^2 exp(-k_q^2 M(t)/2)."""
-    room, size, replicas = 100.0, 50, 400
+    room, size, replicas = 100.0, 50, 200
     chain = gas(size, room, damping=damping)
     generator = np.random.default_rng(1)
     y = np.sort(generator.uniform(-room / 2, 0, (replicas, size)), axis=1)
-    start = started(chain, y, generator.normal(size=(replicas, size)))
+    v = generator.normal(size=y.shape)
+    start = given_start(chain, chain.physical(y), v, replicas=replicas)
     how = {"average": "ensemble", "every": 25.0, "replicas": replicas}
     run = simulate(
         chain, duration=100.0, time_step=time_step, start=start, observe="snapshots", **how
@@ -120,16 +99,15 @@ def test_a_gas_released_from_one_half_fills_the_box_as_its_points_do(damping, ti
 @pytest.mark.compiled
 def test_equal_masses_keep_their_speeds_and_two_masses_reach_maxwells_law():
     """Velocities +-1 without noise; at a fixed energy Maxwell's kurtosis is 3L/(L + 2)."""
-    size, replicas = 200, 30
+    size, replicas = 100, 60
     generator = np.random.default_rng(0)
     y = np.sort(generator.uniform(-size, size, (replicas, size)), axis=1)
     v = generator.choice([-1.0, 1.0], (replicas, size))
     how = {"average": "ensemble", "every": 1000.0, "replicas": replicas, "time_step": 1.0}
     for ratio in (1.0, 1.618):
         chain = gas(size, 2.0 * size, amplitude=0, damping=0, mass_ratio=ratio)
-        run = simulate(
-            chain, duration=2000.0, start=started(chain, y, v), observe="snapshots", **how
-        )
+        start = given_start(chain, chain.physical(y), v, replicas=replicas)
+        run = simulate(chain, duration=2000.0, start=start, observe="snapshots", **how)
         last = run.velocity.transpose("time", "replica", "particle").values[-1]
         if ratio == 1:
             np.testing.assert_array_equal(np.abs(last), 1.0)
@@ -142,7 +120,7 @@ def test_equal_masses_keep_their_speeds_and_two_masses_reach_maxwells_law():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize(("e", "found"), [(0.99, 0.9505), (0.9, 0.7416), (0.5, 0.5568)])
+@pytest.mark.parametrize(("e", "found"), [(0.9, 0.7416), (0.5, 0.5568)])
 def test_a_granular_gas_is_as_cold_as_the_balance_of_energy_says(e, found):
     """50 rods with Gamma l/(L W) = 0.1; ``found`` in other simulations, whose error is 1e-3."""
     chain = gas(50, room=5.0, restitution=e)
@@ -152,17 +130,6 @@ def test_a_granular_gas_is_as_cold_as_the_balance_of_energy_says(e, found):
     assert centre_width(chain) == pytest.approx(found, rel=0.02)
 
 
-@pytest.mark.compiled
-def test_two_masses_have_one_temperature_and_the_step_resolves_the_lighter_ones():
-    chain = Chain(size=6, mass_ratio=0.01, damping=0.5, gap=1)
-    run = simulate(chain, duration=3000)
-    expected = np.sqrt(chain.temperature / chain.rod_masses)
-    np.testing.assert_allclose(run.velocity_width, expected, rtol=0.15)  # error of the heavy: 3 %
-    light = Chain(size=6, mass=0.01 * chain.mass, damping=0.5, gap=1)
-    assert default_time_step(chain) == default_time_step(light)
-
-
-@pytest.mark.compiled
 def test_a_gas_forgets_its_start_by_diffusion_or_by_free_flight():
     """The slowest wave of density decays as exp(-k^2 M(t)/2), k = pi/room."""
     for damping, room in ((0.01, 5.0), (5.0, 30.0)):
@@ -170,9 +137,3 @@ def test_a_gas_forgets_its_start_by_diffusion_or_by_free_flight():
         t = 5 * relaxation_time(chain)
         spread = 2 / damping**2 * (damping * t - 1 + math.exp(-damping * t))
         assert math.exp(-((math.pi / room) ** 2) * spread / 2) < 0.01
-    states = equilibrium_states(chain, 200, seed=3)
-    run = simulate(
-        chain, duration=10, start=states, replicas=200, average="ensemble", observe="widths"
-    )
-    law = beta(np.arange(1, 21), 20 - np.arange(20), scale=room)
-    assert (np.abs(run.displacement_width[-1] / law.std() - 1) < 0.3).all()

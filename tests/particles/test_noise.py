@@ -1,9 +1,6 @@
 """White noise: its bits against a readable twin, its functions against numpy, its statistics."""
 
 import itertools
-import os
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -12,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.stats import kstest, norm
 
 from crazybilliards.particles import noise as module
-from crazybilliards.particles.noise import BLOCK, LANES, STATE, fill, make_noise
+from crazybilliards.particles.noise import BLOCK, LANES, fill, make_noise
 
 WORD = 2**64 - 1
 QUARTER_BITS = 50
@@ -57,12 +54,6 @@ def box_muller(bits):
     return np.concatenate([radius * np.cos(direction), radius * np.sin(direction)])
 
 
-def test_the_twin_gives_the_published_numbers():
-    """Those of state 1, 2, 3, 4, which the test of every other implementation uses."""
-    published = [41943041, 58720359, 3588806011781223, 3591011842654386, 9228616714210784205]
-    assert list(itertools.islice(xoshiro([1, 2, 3, 4]), 5)) == published
-
-
 def test_every_lane_is_a_generator_of_its_own():
     lanes, bits = stream(3).lanes, np.zeros((3, BLOCK), dtype=np.uint64)
     states = lanes.T.tolist()
@@ -70,6 +61,9 @@ def test_every_lane_is_a_generator_of_its_own():
         module._draw_bits(lanes, row)
     for state, drawn in zip(states, bits.reshape(-1, LANES).T, strict=True):
         assert list(itertools.islice(xoshiro(state), drawn.size)) == drawn.tolist()
+    # The published numbers of the state 1, 2, 3, 4.
+    published = [41943041, 58720359, 3588806011781223, 3591011842654386, 9228616714210784205]
+    assert list(itertools.islice(xoshiro([1, 2, 3, 4]), 5)) == published
 
 
 def test_no_two_words_of_a_state_are_alike():
@@ -106,30 +100,6 @@ def test_numbers_do_not_depend_on_how_many_are_taken_at_a_time(pieces):
     np.testing.assert_array_equal(found, numbers(stream(6), sum(pieces)))
 
 
-@pytest.mark.parametrize("taken", [0, 1, BLOCK - 1, BLOCK, BLOCK + 1])
-def test_the_state_is_complete(taken):
-    noise, other = stream(7), stream(8)
-    numbers(noise, taken)
-    numbers(other, 100)
-    for name in STATE:
-        getattr(other, name)[...] = getattr(noise, name)
-    np.testing.assert_array_equal(numbers(other, 3000), numbers(noise, 3000))
-
-
-UNCOMPILED = """
-from crazybilliards.model import Chain
-from crazybilliards.particles import simulate
-chain = Chain(size=3, restitution=0)
-simulate(chain, duration=20, time_step=0.1, warmup=42, replicas=10, threads=1, progress=False)
-"""
-
-
-def test_a_chain_moves_without_compilation_and_without_a_warning():
-    """The measurement of coverage runs it so; numpy's scalars warn where they wrap around."""
-    command = [sys.executable, "-W", "error", "-c", UNCOMPILED]
-    subprocess.run(command, env={**os.environ, "NUMBA_DISABLE_JIT": "1"}, check=True, timeout=120)
-
-
 @pytest.mark.compiled
 def test_a_million_numbers_are_normal_and_white():
     """The bits are those of the twin, which others have tested; here nothing may be left out."""
@@ -150,7 +120,7 @@ def normalized(x):
 @pytest.mark.parametrize("power", [1, 2])
 def test_streams_of_one_seed_are_independent(power):
     root = np.random.SeedSequence(10)
-    streams = [root, *root.spawn(4), *np.random.SeedSequence(11).spawn(4)]
+    streams = [root, *root.spawn(3), np.random.SeedSequence(11)]
     drawn = [normalized(numbers(make_noise(each), 100_000) ** power) for each in streams]
     for x, y in itertools.combinations(drawn, 2):
         for lag in (0, 1, LANES, BLOCK):

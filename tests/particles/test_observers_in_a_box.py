@@ -48,15 +48,6 @@ def test_waves_are_those_of_the_momentum(run):
     np.testing.assert_allclose(run.centre_mean_squared_displacement.isel(lag=2), moved)
 
 
-@pytest.mark.compiled
-def test_waves_of_the_momentum_have_the_temperature_over_the_mean_mass():
-    chain = CHAIN.replace(restitution=1, wall_restitution=1, size=8, box=20)
-    run = simulate(chain, duration=20_000, observe="modes", seed=1, progress=False)
-    expected = chain.temperature / chain.rod_masses.mean()
-    pulls = (run.mode_velocity_variance - expected) / run.mode_velocity_variance_error
-    assert np.abs(pulls).max() < 5
-
-
 def test_the_density_has_all_rods_and_its_grid_ends_at_the_walls(run):
     assert run.outside == 0
     density = smooth(run)

@@ -13,21 +13,16 @@ from crazybilliards.model import Chain
 from crazybilliards.particles.laws.exact_flight import make_propagator
 from crazybilliards.particles.laws.law import EVENTS, ISOTONIC, SORT
 
-RESTITUTIONS = [0.0, 0.05, 0.16, 0.17, 0.5, 0.9999, 1.0, 1.05]
-GAPS = [0.0, 0.3]
-SPRINGS = ["linear", "quadratic"]
+RESTITUTIONS = [0.0, 0.16, 0.5, 0.9999, 1.0, 1.05]
 METHODS = ["event-driven", "contact-dynamics"]
 
-# Positions and velocities; those of the first list are their own mirror images.
-MIRRORED = {
+HOSTILE = {  # positions and velocities
     "two": ([-1, 1], [1, -1]),
     "two touching": ([0, 0], [1, -1]),
     "pairs that tie": ([-3, -2, 2, 3], [1, 0, 0, -1]),
     "a row hit twice": ([0, 0, 0, 0], [1, 0, 0, -1]),
     "two clumps": ([-1, -1, 1, 1], [2, 1, -1, -2]),
     "at rest": ([0, 0, 0], [0, 0, 0]),
-}
-HOSTILE = MIRRORED | {
     "one": ([0], [-2]),
     "neighbours that tie": ([-1, 0, 1], [1, 0, -1]),
     "touching neighbours that tie": ([0, 0, 0], [1, 0, -1]),
@@ -45,18 +40,17 @@ AROUNDS = [PLAIN, Around(0.5, 0.0), Around(masses=(1, 3)), Around(0.5, 0.0, (1, 
 
 
 @pytest.mark.parametrize("e", RESTITUTIONS)
-@pytest.mark.parametrize("name", HOSTILE)
 @pytest.mark.parametrize("around", AROUNDS)
+@pytest.mark.parametrize("name", HOSTILE)
 def test_no_rod_passes_another_and_nothing_is_lost_or_won(around, name, e):
     """The quick laws move as one collision after the other does."""
     e = min(e, 1.0) if around.room < np.inf else e  # with flippers in a box nothing is bounded
     special = SPECIAL.get(e, []) if around == PLAIN or e == 0 else []
-    for dt in (1.5, 500.0):
+    for dt, pull in ((1.5, 0.0), (1.5, 0.4), (500.0, 0.0)):
         for operator in (*OPERATORS, *special):
-            for gap, exponent in zip(GAPS, (2, 3), strict=True):
-                for pull in (0.0, 0.4) if dt < 2 else (0.0,):
-                    springs = {"pull": pull, "gap": gap, "exponent": exponent, "around": around}
-                    require_kept(operator, HOSTILE[name], dt, e, **springs)
+            for gap, exponent in ((0.0, 2), (0.3, 3)):
+                springs = {"pull": pull, "gap": gap, "exponent": exponent, "around": around}
+                require_kept(operator, HOSTILE[name], dt, e, **springs)
         for quick in special:
             require_alike(quick, EVENTS, HOSTILE[name], dt, e, around=around)
 
@@ -75,30 +69,6 @@ def test_of_equal_contacts_the_faster_and_then_the_left_one_is_first(together):
         )
         _, v, *_ = drifted(EVENTS, state, 1.5, 0.5)
         np.testing.assert_array_equal(v[::side] * side, [-0.15625, 0.28125, 0.875])
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize(
-    ("size", "e"),
-    # A collapse of many rods has a test of its own.
-    [(L, e) for L in (1, 2, 3, 8) for e in RESTITUTIONS if L < 8 or not 0 < e < 0.5],
-)
-@pytest.mark.parametrize("gap", GAPS)
-def test_one_long_step_is_many_short_ones_without_noise_and_springs(gap, size, e):
-    chain = Chain(size=size, restitution=e, gap=gap, amplitude=0, damping=0, stiffness=0)
-    first, some = np.eye(1, size)[0], np.sin(9.0 * np.arange(size) + 1)
-    # Where a lattice with a gap meets at one point, rounding decides who is first.
-    lattice = np.linspace(1, -1, size) if size < 8 or gap == 0 else some[::-1]
-    for v in (first, -first[::-1], some, lattice):
-        one, *others = (
-            moved(chain, (chain.reduced_anchors, v), step, steps, counted=counted, stepper=stepper)
-            for step, steps in ((500.0, 1), (0.1, 5000))
-            for counted in (True, False)
-            for stepper in ("splitting", "euler")
-        )
-        for other in others:
-            np.testing.assert_allclose(other[0], one[0], rtol=0, atol=1e-6)
-            np.testing.assert_allclose(other[1], one[1], rtol=0, atol=1e-8)
 
 
 @pytest.mark.parametrize(("step", "last"), [(500.0, 0.13572), (5.0, 0.12505), (0.5, 0.125)])
@@ -132,9 +102,8 @@ def test_a_step_of_exact_flight_is_right_with_strong_damping_but_for_rounding(da
     assert found == pytest.approx(expected, rel=1e-13 + 1e-16 * strong.damping**2)
 
 
-@pytest.mark.parametrize("spring", SPRINGS)
-@pytest.mark.parametrize("gap", GAPS)
-@pytest.mark.parametrize("size", [1, 2, 3, 6])
+@pytest.mark.parametrize(("spring", "gap"), [("linear", 0.0), ("linear", 0.3), ("quadratic", 0.0)])
+@pytest.mark.parametrize("size", [1, 2, 6])
 @pytest.mark.parametrize("counted", [True, False])
 def test_elastic_steps_are_symmetric_in_time(counted, size, gap, spring):
     """Turned round, the rods go back to where they began, collisions included."""
@@ -149,8 +118,7 @@ def test_elastic_steps_are_symmetric_in_time(counted, size, gap, spring):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("e", [0.5, 0.9999, 1.0, 1.05])
-@pytest.mark.parametrize("gap", GAPS)
+@pytest.mark.parametrize(("gap", "e"), [(0.0, 0.5), (0.3, 0.9999), (0.3, 1.05)])
 @pytest.mark.parametrize(("method", "size", "order"), [(METHODS[0], 5, 2), (METHODS[1], 2, 1)])
 def test_steps_with_collisions_have_the_order_stated(method, size, order, gap, e):
     """The mean error of transients from many starts."""
@@ -162,7 +130,7 @@ def test_steps_with_collisions_have_the_order_stated(method, size, order, gap, e
         v = generator.normal(size=size)
         how = {"method": method, "counted": method == METHODS[0]}
         fine, *ends = (
-            np.array(moved(chain, (y, v), 2.0**-k, 2 ** (k + 1), **how)) for k in (14, 4, 8)
+            np.array(moved(chain, (y, v), 2.0**-k, 2 ** (k + 1), **how)) for k in (12, 4, 8)
         )
         errors.append([np.abs(end - fine).max() for end in ends])
     coarse, finer = np.mean(errors, axis=0)
@@ -170,10 +138,10 @@ def test_steps_with_collisions_have_the_order_stated(method, size, order, gap, e
 
 
 @pytest.mark.parametrize("average", ["time", "ensemble"])
-@pytest.mark.parametrize("replicas", [1, 2, 7, 50, 63, 64, 100])
+@pytest.mark.parametrize("replicas", [1, 7, 63, 64, 100])
 def test_a_run_keeps_what_it_was_asked_for(replicas, average):
-    for every in (0.1, 1 / 3, 0.7, np.pi, 1e-3, 1e4 / 7):
-        for step in (None, 0.05, 0.033):
+    for every in (1 / 3, np.pi, 1e-3, 1e4 / 7):
+        for step in (None, 0.033):
             asked = {"every": every, "time_step": step, "warmup": 7.7, "duration": 6400 * every}
             asked |= {"average": average, "replicas": replicas, "observe": "energy"}
             run = a_run(Chain(size=3, restitution=0.5), **asked)
@@ -184,3 +152,8 @@ def test_a_run_keeps_what_it_was_asked_for(replicas, average):
                 continue
             assert run.duration >= 6400 * every * (1 - 1e-9)
             assert 10 <= run.blocks * replicas < 64 + replicas
+
+
+def test_a_warm_up_is_not_made_much_longer_by_rare_snapshots():
+    run = a_run(Chain(size=3), duration=64_000, every=1000.0, observe="snapshots", warmup=50)
+    assert run.times[0] == pytest.approx(1050, abs=1.1)

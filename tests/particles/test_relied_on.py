@@ -4,12 +4,14 @@ import warnings
 
 import numpy as np
 import pytest
+from described_runs import a_run
 
 from crazybilliards.comparison import coverage_density, deviation, overlay, smooth
 from crazybilliards.kinetic import equilibrium, equilibrium_states
 from crazybilliards.model import Chain
 from crazybilliards.particles import ShortRunWarning, given_start, relaxation_time, simulate
 from crazybilliards.particles.observers import Density, TimeCorrelations
+from crazybilliards.particles.observers.error_bars import jackknife
 
 QUIET = {"progress": False, "threads": 1}
 
@@ -28,17 +30,14 @@ DISSIPATIVE, WIDE = FIVE.replace(restitution=0.9), FIVE.replace(gap=1.0)
     ("chain", "settings", "known"),
     [
         (DISSIPATIVE, {}, True),
-        (FIVE.replace(restitution=0.05), {}, True),
         (DISSIPATIVE, {"observe": "energy"}, True),
         (WIDE, {}, True),
         (FIVE.replace(spring="quadratic"), {}, True),
         (FIVE, {"stepper": "euler"}, True),
-        (FIVE.replace(restitution=0.0), {"method": "contact-dynamics"}, True),
         (DISSIPATIVE.replace(amplitude=0), {"start": "pushed"}, False),
         (DISSIPATIVE.replace(damping=0), {"observe": "energy"}, False),
         (WIDE.replace(damping=0), {}, False),
         (WIDE, {"stepper": "euler"}, False),
-        (FIVE, {"method": "contact-dynamics"}, False),
         (DISSIPATIVE, {"method": "contact-dynamics"}, False),
     ],
 )
@@ -54,7 +53,7 @@ def test_the_error_of_the_step_is_never_zero_where_there_is_one(chain, settings,
 @pytest.mark.compiled
 def test_the_error_of_eulers_step_is_that_of_a_free_rod():
     chain = Chain(size=3, damping=4.0)
-    run = simulate(chain, duration=40_000, time_step=0.2, stepper="euler", seed=1, **QUIET)
+    run = simulate(chain, duration=10_000, time_step=0.2, stepper="euler", seed=1, **QUIET)
     ratio = np.sqrt(np.mean(run.velocity_width**2)) / chain.free_velocity_width - 1
     error = float(run.velocity_width_error.mean()) / chain.free_velocity_width / 3**0.5
     heat = 1 - chain.damping * 0.2 / (2 * chain.mass) - chain.stiffness * 0.2**2 / (4 * chain.mass)
@@ -64,8 +63,7 @@ def test_the_error_of_eulers_step_is_that_of_a_free_rod():
 
 @pytest.mark.compiled
 @pytest.mark.validate
-@pytest.mark.parametrize("damping", [0.1, 1.0, 10.0])
-@pytest.mark.parametrize("relaxations", [20, 60, 300])
+@pytest.mark.parametrize(("damping", "relaxations"), [(0.1, 60), (1.0, 20), (10.0, 20)])
 def test_error_bars_of_short_runs_cover(damping, relaxations):
     """The scatter of 200 runs, whose blocks would be shorter than the memory if they were 64.
 
@@ -82,12 +80,6 @@ def test_error_bars_of_short_runs_cover(damping, relaxations):
         assert 0.75 < values.std(ddof=1) / np.sqrt((errors**2).mean()) < 1.3, name
 
 
-def test_a_run_states_the_memory_of_its_chain():
-    chain = Chain(size=3, damping=0.2)
-    assert ensemble(chain).attrs["relaxation_time"] == relaxation_time(chain)
-    assert relaxation_time(chain) == pytest.approx(2 * chain.mass / chain.damping)
-
-
 SHORT = [
     (Chain(size=3), {"duration": 100}, "duration=100 .* at least 167.6, or 10 replicas"),
     (Chain(size=3, damping=0.01), {"duration": 5000}, "duration=5000 .* at least 1.676e"),
@@ -95,8 +87,6 @@ SHORT = [
     (Chain(size=3), {"start": "shifted"}, "warmup=0 .* at least 41.89"),
     (Chain(size=3, damping=0), {"time_step": 0.1}, "damping=0: .* never forgets .* mean nothing"),
     (Chain(size=3, stiffness=0), {}, "stiffness=0: .* spread .* mean nothing"),
-    (Chain(size=1, stiffness=0), {"duration": 5000}, "stiffness=0: .* spread .* mean nothing"),
-    (Chain(size=3, spring="quadratic", stiffness=0, restitution=0.5), {}, "stiffness=0"),
     (Chain(size=3, amplitude=0), {"start": "shifted"}, "amplitude=0: .* rest.* mean nothing"),
 ]
 
@@ -131,32 +121,23 @@ def test_what_free_rods_do_not_have_is_not_given():
     assert abs(grown - expected) < 5 * error
 
 
-@pytest.mark.parametrize(
-    "settings",
-    [
-        {},
-        {"duration": 20, "replicas": 10},
-        {"duration": 100, "observe": "snapshots"},
-        {"duration": 5, "average": "ensemble", "replicas": 2},
-    ],
-)
-def test_what_is_long_enough_says_nothing(settings):
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        simulate(Chain(size=3), **({"duration": 200, "observe": "widths"} | settings), **QUIET)
-
-
-def test_a_chain_without_noise_has_nothing_to_forget():
+def test_what_is_long_enough_or_has_nothing_to_forget_says_nothing():
     free = Chain(size=3, amplitude=0, damping=0)
     start = given_start(free, free.anchors, [1.0, 0.0, -1.0])
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         simulate(free, duration=np.pi, every=0.1, observe="collisions", start=start, **QUIET)
+        for settings in (
+            {"duration": 200},
+            {"duration": 20, "replicas": 10},
+            {"duration": 100, "observe": "snapshots"},
+            {"duration": 5, "average": "ensemble", "replicas": 2},
+        ):
+            simulate(Chain(size=3), **({"observe": "widths"} | settings), **QUIET)
 
 
-@pytest.mark.parametrize("e", [1.0, 0.9])
-def test_a_run_that_continues_another_one_has_new_noise(e):
-    chain = Chain(size=4, restitution=e)
+def test_a_run_that_continues_another_one_has_new_noise():
+    chain = Chain(size=4, restitution=0.9)
     times = {"duration": 400.0, "every": 1.0, "average": "ensemble", "observe": "snapshots"}
     centres, start = [], None
     for _ in range(3):
@@ -165,10 +146,8 @@ def test_a_run_that_continues_another_one_has_new_noise(e):
         centres.append(run.velocity.values[0, 50:].mean(axis=1))
     for one, other in ((0, 1), (1, 2), (0, 2)):
         assert abs(np.corrcoef(centres[one], centres[other])[0, 1]) < 5 / 100**0.5
-    again = simulate(chain, start=start, **times, **QUIET)
-    np.testing.assert_array_equal(
-        again.velocity, simulate(chain, start=start, **times, **QUIET).velocity
-    )
+    one, other = (simulate(chain, start=start, **times, **QUIET).velocity for _ in range(2))
+    np.testing.assert_array_equal(one, other)
 
 
 def rods(density):
@@ -179,7 +158,6 @@ def rods(density):
     ("chain", "spread", "speed"),
     [
         (Chain(size=40, stiffness=0, damping=0, amplitude=0), 300.0, 3.0),
-        (Chain(size=40, stiffness=0, damping=0), 30.0, 1.0),
         (Chain(size=40, stiffness=0), 30.0, 1.0),
         (Chain(size=40, damping=0, gap=0.3), 10.0, 1.0),
         (Chain(size=40, restitution=0.5, gap=0.3), 100.0, 5.0),
@@ -190,7 +168,7 @@ def test_the_density_holds_every_rod_wherever_it_started(chain, spread, speed):
     generator = np.random.default_rng(1)
     position = chain.physical(np.sort(generator.uniform(-spread, spread, 40)))
     start = given_start(chain, position, speed * generator.normal(size=40), replicas=4)
-    settings = {"duration": 20.0, "every": 0.5, "time_step": 0.05, "replicas": 4}
+    settings = {"duration": 20.0, "every": 0.5, "time_step": 0.1, "replicas": 4}
     run = simulate(chain, start=start, average="ensemble", observe="density", **settings, **QUIET)
     assert run.outside == 0
     assert rods(run.density) == pytest.approx(40)
@@ -205,7 +183,7 @@ def test_the_grid_of_the_density_can_be_chosen():
     assert wide.x[-1] > 200
 
 
-@pytest.mark.parametrize("particles", [[1], [1, 2], [3], None])
+@pytest.mark.parametrize("particles", [[1, 2], None])
 def test_what_is_smoothed_is_what_was_observed(particles):
     chain = Chain(size=6)
     how = {"particles": particles, "observe": ("density", "snapshots")}
@@ -227,31 +205,85 @@ def test_densities_that_are_not_alike_are_not_compared():
         with pytest.raises(ValueError, match=r"a: .* b: "):
             overlay({"a": one, "b": other})
     assert deviation(smooth(once), twice).maximum == 0
-    one_rod = states.isel(particle=[2])
     with pytest.raises(ValueError, match="hold 1 and 6 rods"):
-        deviation(smooth(one_rod), twice)
-    with (
-        pytest.warns(UserWarning, match="different chains: size 9 and 6"),
-        pytest.raises(ValueError, match="hold 9 and 6 rods"),
-    ):
-        deviation(smooth(equilibrium(Chain(size=9))), twice)
-    with pytest.warns(
-        UserWarning, match="different chains: amplitude 2.0 and 1.0, gap 0.5 and 0.0"
-    ):
-        deviation(smooth(equilibrium(Chain(size=6, gap=0.5, amplitude=2.0))), twice)
+        deviation(smooth(states.isel(particle=[2])), twice)
+    other = smooth(equilibrium(chain.replace(gap=0.5, amplitude=2.0)))
+    with pytest.warns(UserWarning, match=r"different chains: amplitude 2.0 and 1.0, gap 0.5 and 0"):
+        deviation(other, twice)
 
 
 @pytest.mark.compiled
 @pytest.mark.validate
 def test_the_largest_deviation_in_errors_is_as_documented():
     """Of 40 runs that agree with the exact density; rarely visited bins are left out."""
-    for chain in (Chain(size=100), Chain(size=20, amplitude=5.0, gap=1.0)):
-        exact = smooth(equilibrium(chain))
-        largest = [
-            deviation(smooth(simulate(chain, seed=s, observe="density", **QUIET)), exact)
-            for s in range(40)
-        ]
-        pulls = np.array([each.maximum_in_errors for each in largest])
-        assert 2.7 < np.median(pulls) < 3.8
-        assert (pulls > 4.5).mean() <= 0.125
-        assert pulls.max() < 6
+    chain = Chain(size=20, amplitude=5.0, gap=1.0)
+    exact, how = smooth(equilibrium(chain)), {"observe": "density", **QUIET}
+    runs = (simulate(chain, seed=seed, **how) for seed in range(40))
+    pulls = np.array([deviation(smooth(run), exact).maximum_in_errors for run in runs])
+    assert 2.7 < np.median(pulls) < 3.8
+    assert (pulls > 4.5).mean() <= 0.125
+    assert pulls.max() < 6
+
+
+# -- blocks of time: the jackknife over them, and how long they are --------------------------------
+
+
+def mean(average):
+    return average
+
+
+def test_the_error_of_a_mean_of_equal_blocks_is_the_standard_error():
+    blocks = np.random.default_rng(0).normal(size=(20, 3))
+    value, error = jackknife(mean, 7 * blocks, np.full(20, 7))
+    np.testing.assert_allclose(value, blocks.mean(axis=0))
+    np.testing.assert_allclose(error, blocks.std(axis=0, ddof=1) / np.sqrt(20))
+
+
+def test_unequal_blocks_are_weighted_and_empty_ones_ignored():
+    """Blocks of n samples of variance 1 give the mean of all with an error 1/sqrt(N)."""
+    generator = np.random.default_rng(1)
+    counts = generator.integers(5, 15, size=4000)
+    sums = np.array([generator.normal(size=n).sum() for n in counts])
+    value, error = jackknife(mean, sums, counts)
+    assert value == pytest.approx(sums.sum() / counts.sum())
+    assert error * np.sqrt(counts.sum()) == pytest.approx(1, abs=0.05)
+    padded = jackknife(mean, np.append(sums, 0.0), np.append(counts, 0))
+    np.testing.assert_allclose(padded, (value, error))
+
+
+def test_every_time_has_blocks_of_its_own():
+    generator = np.random.default_rng(2)
+    sums, counts = generator.normal(size=(6, 4, 2, 5)), generator.integers(1, 4, size=(6, 4))
+
+    def difference(average):
+        return average[..., 0, :] - average[..., 1, :]
+
+    counts[3:, 2] = 0
+    value, error = jackknife(difference, sums * counts[..., None, None], counts)
+    assert value.shape == error.shape == (4, 5)
+    for time in range(4):
+        alone = jackknife(difference, sums[:, time] * counts[:, time, None, None], counts[:, time])
+        np.testing.assert_allclose((value[time], error[time]), alone)
+
+
+def test_one_block_tells_nothing_of_the_error():
+    value, error = jackknife(mean, np.array([[2.0, 4.0]]), np.array([2]))
+    np.testing.assert_array_equal(value, [1, 2])
+    assert np.isinf(error).all()
+
+
+@pytest.mark.compiled
+def test_blocks_are_added_up_in_pairs_and_stay_longer_than_the_memory():
+    """The error of a mean is right, from 33 to 64 blocks, as that of a known process."""
+    chain = Chain(size=1, damping=2)
+    for duration in (2000, 40_000):
+        run = a_run(chain, duration=duration, replicas=2, observe="density")
+        assert 32 <= 2 * run.blocks <= 64
+    # The mean of a displacement over a time t has the variance 2 tau <d^2>/t, tau = gamma/k.
+    tau = chain.damping / chain.stiffness
+    how = {"duration": 5000, "observe": "widths", "progress": False}
+    runs = [simulate(chain, seed=seed, **how) for seed in range(40)]
+    found = np.mean([run.mean_displacement_error.item() ** 2 for run in runs])
+    known = 2 * tau * chain.temperature / chain.stiffness / 5000
+    assert found == pytest.approx(known, rel=5 * np.sqrt(2 / 40 / 32))
+    assert np.mean([run.autocorrelation_time.item() for run in runs]) == pytest.approx(tau, rel=0.2)

@@ -6,24 +6,32 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from crazybilliards.kinetic import equilibrium, equilibrium_states
+from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
 from crazybilliards.particles import given_start, simulate
 from crazybilliards.particles.dynamics import longest_step
 from crazybilliards.particles.observers.widths import Widths
-from crazybilliards.particles.running.replica import Replica
 
 QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("spring", ["linear", "quadratic"])
-@pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
-@pytest.mark.parametrize("size", [1, 2, 3, 20])
+@pytest.mark.parametrize(
+    ("size", "gap", "spring"),
+    [
+        (1, 0.2, "quadratic"),
+        (2, 1.0, "linear"),
+        (3, 0.2, "quadratic"),
+        (20, 0.0, "linear"),
+        (20, 0.0, "quadratic"),
+        (20, 0.2, "linear"),
+        (20, 1.0, "quadratic"),
+    ],
+)
 def test_elastic_chain_is_in_its_exact_equilibrium(size, gap, spring):
     """Every particle's widths and displacement within 5 standard errors, t-distributed."""
     chain = Chain(size=size, gap=gap, spring=spring)
-    run = simulate(chain, duration=20_000, replicas=2, seed=7, observe="widths", progress=False)
+    run = simulate(chain, duration=10_000, replicas=2, seed=7, observe="widths", progress=False)
     exact = equilibrium(chain)
     for name in QUANTITIES:
         error = run[f"{name}_error"]
@@ -32,32 +40,21 @@ def test_elastic_chain_is_in_its_exact_equilibrium(size, gap, spring):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize(("e", "damping"), [(0, 1), (0.9, 1), (1, 1), (1.05, 4)])
-def test_the_same_seed_gives_the_same_bits_whatever_the_threads(e, damping):
-    chain = Chain(size=30, gap=0.1, restitution=e, damping=damping)
-    options = {"duration": 200, "replicas": 3, "progress": False}
-    options["observe"] = ("widths", "density", "velocities", "energy")
+@pytest.mark.parametrize(("e", "average"), [(0.9, "time"), (1, "ensemble")])
+def test_the_same_seed_gives_the_same_bits_whatever_the_threads(e, average):
+    chain = Chain(size=10, restitution=e)
+    options = {"duration": 100, "replicas": 5, "average": average, "progress": False}
+    options["observe"] = ("widths", "density", "energy", "snapshots")
     one, *others = (simulate(chain, threads=threads, seed=5, **options) for threads in (1, 2, 3))
     for run in others:
         xr.testing.assert_identical(run, one)
     other = simulate(chain, seed=6, **options)
-    assert (other.velocity_width != one.velocity_width).all()
-
-
-@pytest.mark.compiled
-def test_an_equilibrium_start_needs_no_warm_up():
-    chain = Chain(size=20, gap=0.3)
-    start = equilibrium_states(chain, 64, seed=3)
-    run = simulate(chain, start=start, replicas=64, duration=30, progress=False)
-    assert run.attrs["end_time"] == pytest.approx(30, rel=0.05)
-    exact = equilibrium(chain)
-    for name in QUANTITIES:
-        assert float(np.abs((run[name] - exact[name]) / run[f"{name}_error"]).max()) < 5
+    assert (other.velocity_width != one.velocity_width).any()
 
 
 @pytest.mark.filterwarnings("ignore:.*Without a steady state")
 @pytest.mark.parametrize("stepper", ["splitting", "euler"])
-@pytest.mark.parametrize(("damping", "stiffness"), [(0, 1), (1, 1), (9, 0.5), (3, 0)])
+@pytest.mark.parametrize(("damping", "stiffness"), [(0, 1), (9, 0.5), (3, 0)])
 def test_a_step_is_refused_just_where_it_gets_unstable(stepper, damping, stiffness):
     """One free rod: the growth of its swing in a step is the largest eigenvalue of the step."""
     chain = Chain(size=1, damping=damping, stiffness=stiffness, amplitude=0, radius=0.3, mass=2)
@@ -83,16 +80,7 @@ def test_a_step_is_refused_just_where_it_gets_unstable(stepper, damping, stiffne
     # The left rod's tiny velocity makes this a start that moves.
     start = given_start(pair, pair.anchors, [-1e-9, 0.0])
     longest = {"time_step": 0.99 * min(limit, 10.0), "stepper": stepper}
-    simulate(pair, duration=2e4, start=start, **longest)
-
-
-@pytest.mark.filterwarnings("ignore:.*Without a steady state")
-def test_a_spring_without_a_rate_takes_a_time_step():
-    chain = Chain(size=3, spring="quadratic", damping=0)
-    with pytest.raises(ValueError, match="give time_step"):
-        simulate(chain, duration=10)
-    run = simulate(chain, duration=10, time_step=0.01, observe="widths", progress=False)
-    assert run.attrs["status"] == "completed"
+    simulate(pair, duration=2e3, start=start, **longest)
 
 
 @pytest.mark.compiled
@@ -127,22 +115,15 @@ def test_long_times_between_snapshots_are_taken_in_parts(average, observe, monke
 
 
 @pytest.mark.compiled
-def test_ctrl_c_before_anything_was_measured_is_raised(ctrl_c):
-    ctrl_c(Replica, "_advance", bool)
-    with pytest.raises(KeyboardInterrupt):
-        simulate(Chain(size=50), duration=100, warmup=1e9, progress=False)
-
-
-@pytest.mark.compiled
 def test_memory_does_not_grow_with_the_duration():
     chain = Chain(size=20)
     peaks = []
-    for duration in (1_000, 1_000, 50_000):  # the first one loads what stays loaded
+    for duration in (1_000, 1_000, 20_000):  # the first one loads what stays loaded
         tracemalloc.start()
         simulate(chain, duration=duration, progress=False)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
-    # A full buffer of snapshots is 2 MB; storing the longer run would take 16 MB.
+    # A full buffer of snapshots is 2 MB; storing the longer run would take 6 MB.
     assert peaks[2] < peaks[1] + 3e6
 
 

@@ -52,35 +52,15 @@ def test_euler_has_order_one_in_the_velocity_width():
     np.testing.assert_allclose(np.log2(np.array(errors[1:]) / errors[:-1]), 1, atol=0.1)
 
 
-def test_without_spring_the_velocity_is_exact_or_as_stated():
+def test_without_spring_or_damping_the_noise_is_exact_or_as_stated():
     chain = Chain(stiffness=0, damping=2, amplitude=3)
     for stepper, factor in (("splitting", 1.0), ("euler", 1 / (1 - 2 * 0.3 / (2 * chain.mass)))):
         step = make_step(chain, 0.3, stepper)
         variance = step.noise**2 / (1 - step.decay**2)
         assert variance == pytest.approx(factor * chain.free_velocity_width**2, rel=1e-12)
-
-
-def test_the_noise_without_damping_is_the_limit_of_weak_damping():
-    weak = make_step(Chain(damping=1e-9), 0.1, "splitting")
-    none = make_step(Chain(damping=0), 0.1, "splitting")
+    weak, none = (make_step(Chain(damping=damping), 0.1, "splitting") for damping in (1e-9, 0))
     assert none.noise == pytest.approx(weak.noise)
     assert none.decay == 1
-
-
-def test_without_noise_it_does_not_matter_how_steps_are_grouped():
-    """Two half dampings are a whole one; with noise they are two draws instead of one."""
-    chain = Chain(size=20, amplitude=0, gap=0.2)
-    step = make_step(chain, 0.1, "splitting")
-    results = []
-    for groups in ([30], [1] * 30, [7, 20, 3]):
-        generator = np.random.default_rng(3)
-        y, v = np.sort(generator.normal(size=20)), generator.normal(size=20)
-        for steps in groups:
-            y, v = take_steps(chain, y, v, step, steps)
-        results.append((y, v))
-    for y, v in results[1:]:
-        np.testing.assert_allclose(y, results[0][0], atol=1e-10)
-        np.testing.assert_allclose(v, results[0][1], atol=1e-10)
 
 
 # -- the stated error covers what was measured, and is not absurdly larger --------------------
@@ -90,12 +70,9 @@ def test_without_noise_it_does_not_matter_how_steps_are_grouped():
 MEASURED = [  # restitution, r, r_0, change, error
     (0.2, 0.167, 0.056, -0.40, 0.03),
     (0.2, 0.292, 0.169, -0.53, 0.02),
-    (0.2, 0.507, 0.169, -0.44, 0.02),
     (0.5, 0.176, 0.059, -0.13, 0.03),
     (0.5, 0.307, 0.178, -0.29, 0.03),
-    (0.5, 0.533, 0.178, -0.23, 0.02),
     (0.9, 0.308, 0.178, +0.07, 0.06),
-    (0.9, 0.533, 0.178, +0.33, 0.07),
     (0.9, 0.738, 0.246, +1.18, 0.06),
     (0.9, 1.278, 0.246, +9.56, 0.07),
     (0.97, 0.664, 0.221, +0.65, 0.05),
@@ -110,31 +87,25 @@ def stated(restitution, r):
     return 100 * time_step_error(chain, (r * chain.mass / chain.amplitude) ** 2, 1.0)
 
 
-@pytest.mark.parametrize(("e", "r", "shorter", "change", "error"), MEASURED)
-def test_the_stated_error_covers_the_measured_change(e, r, shorter, change, error):
-    assert abs(change) - 3 * error < stated(e, r)
-    if r < SHORT:
-        assert stated(e, r) - stated(e, shorter) < 2 * abs(change) + 3 * error
+def test_the_stated_error_covers_the_measured_change():
+    for e, r, shorter, change, error in MEASURED:
+        assert abs(change) - 3 * error < stated(e, r)
+        if r < SHORT:
+            assert stated(e, r) - stated(e, shorter) < 2 * abs(change) + 3 * error
 
 
-@pytest.mark.parametrize("stepper", ["splitting", "euler"])
 @pytest.mark.parametrize("method", ["event-driven", "contact-dynamics"])
-def test_a_single_rod_has_no_error_of_collisions(stepper, method):
-    errors = {
-        time_step_error(
-            Chain(size=1, restitution=e, gap=gap), 0.1, 0.3, stepper=stepper, method=method
-        )
-        for e in (0.0, 0.5, 1.0, 1.2)
-        for gap in (0.0, 2.0)
-    }
-    assert len(errors) == 1
-    assert (errors == {0.0}) == (stepper == "splitting")
+def test_a_single_rod_has_no_error_of_collisions(method):
+    chains = [Chain(size=1, restitution=e, gap=gap) for e, gap in ((0, 0), (0.5, 2), (1.2, 0))]
+    for stepper in ("splitting", "euler"):
+        how = {"stepper": stepper, "method": method}
+        errors = {time_step_error(chain, 0.1, 0.3, **how) for chain in chains}
+        assert len(errors) == 1
+        assert (errors == {0.0}) == (stepper == "splitting")
 
 
-def test_at_restitution_one_there_is_no_error_of_the_noise():
+def test_where_no_error_is_stated():
+    """At restitution one there is none, and of other methods nobody measured it."""
     assert stated(1.0, 5.0) == 0
     assert stated(1 - 1e-9, 0.3) < 0.05
-
-
-def test_a_method_that_nobody_measured_has_no_stated_error():
     assert math.isnan(time_step_error(Chain(size=30, restitution=0.8), 0.1, 0.3, method="my own"))

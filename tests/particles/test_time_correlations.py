@@ -43,11 +43,10 @@ def test_the_error_of_a_lag_that_one_block_holds_alone_is_infinite():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("e", [1.0, 0.5])
-@pytest.mark.parametrize("damping", [1.0, pytest.param(CRITICAL, marks=pytest.mark.validate), 10.0])
+@pytest.mark.parametrize(("damping", "e"), [(1.0, 1.0), (CRITICAL, 0.5), (10.0, 0.5)])
 def test_the_centre_of_mass_is_a_damped_oscillator_at_any_restitution(damping, e):
     chain = Chain(size=5, restitution=e, damping=damping)
-    how = {"duration": 20_000, "replicas": 2, "seed": 3, "progress": False}
+    how = {"duration": 10_000, "seed": 3, "progress": False}
     longest = 5 * cb.relaxation_time(chain)
     how["every"] = longest / 100
     run = simulate(chain, observe=TimeCorrelations(longest=longest), **how)
@@ -58,7 +57,7 @@ def test_the_centre_of_mass_is_a_damped_oscillator_at_any_restitution(damping, e
     moved = 2 * (displacement[0] - displacement)
     for each in pulls(run, "centre_", (velocity, displacement, moved, spectrum)).values():
         assert np.nanmax(abs(each)) < 5
-    assert (run.centre_velocity_autocorrelation_error[0] < 0.02 * velocity[0]).all()
+    assert (run.centre_velocity_autocorrelation_error[0] < 0.04 * velocity[0]).all()
 
 
 def exact_spectrum(chain, w):
@@ -68,31 +67,12 @@ def exact_spectrum(chain, w):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("relaxations", [0.5, 1, 4.9, 5, None])
-@pytest.mark.parametrize(
-    "chain",
-    [
-        Chain(size=1, mass=1.0, damping=0.2),
-        Chain(size=1, mass=1.0, damping=0.5),
-        Chain(size=1, mass=1.0, damping=3.0),
-    ],
-)
-def test_a_spectrum_is_right_or_not_given(chain, relaxations):
+@pytest.mark.parametrize("damping", [0.2, 0.5, 3.0])
+def test_a_spectrum_is_right(damping):
+    chain = Chain(size=1, mass=1.0, damping=damping)
     memory = cb.relaxation_time(chain)
-    longest = None if relaxations is None else relaxations * memory
-    short = relaxations is not None and relaxations < 5
-    duration = (20 if short else 1000) * memory
-    how = {"duration": duration, "every": memory / 40, "progress": False}
-    observe = TimeCorrelations(longest=longest)
-    if short:
-        with pytest.warns(
-            UserWarning, match=rf"spectra .* longest lag .* {5 * memory:.4g}; longest="
-        ):
-            run = simulate(chain, observe=observe, **how)
-        for of in ("", "wave_", "centre_"):
-            assert run[f"{of}velocity_spectrum"].isnull().all()
-            assert run[f"{of}velocity_autocorrelation"].notnull().all()
-        return
+    how = {"duration": 1000 * memory, "every": memory / 40, "progress": False}
+    observe = TimeCorrelations(longest=None if damping < 0.5 else 5 * memory)
     run = simulate(chain, observe=observe, **how)
     low = run.frequency < 0.1 * run.frequency[-1]  # far from what is folded down
     found, error = (
@@ -102,12 +82,23 @@ def test_a_spectrum_is_right_or_not_given(chain, relaxations):
     assert (abs(found - exact_spectrum(chain, run.frequency[low])) < 5 * error + folded).all()
 
 
+@pytest.mark.parametrize("relaxations", [0.5, 4.9])
+def test_a_spectrum_of_short_lags_is_not_given(relaxations):
+    chain = Chain(size=1)
+    memory = cb.relaxation_time(chain)
+    how = {"duration": 20 * memory, "progress": False}
+    with pytest.warns(UserWarning, match=rf"spectra .* longest lag .* {5 * memory:.4g}; longest="):
+        run = simulate(chain, observe=TimeCorrelations(longest=relaxations * memory), **how)
+    for of in ("", "wave_", "centre_"):
+        assert run[f"{of}velocity_spectrum"].isnull().all()
+        assert run[f"{of}velocity_autocorrelation"].notnull().all()
+
+
 @pytest.mark.compiled
 @pytest.mark.validate
-@pytest.mark.parametrize("damping", [1.0, 10.0])
-def test_stated_errors_are_the_scatter_in_runs_of_twenty_longest_lags(damping):
+def test_stated_errors_are_the_scatter_in_runs_of_twenty_longest_lags():
     """The blocks that the schedule makes there are shorter than the longest lag."""
-    chain = Chain(size=10, damping=damping, gap=1000.0)  # rods that never meet: runs of one each
+    chain = Chain(size=10, gap=1000.0)  # rods that never meet: runs of one each
     how = {"duration": 1000, "every": 0.5, "progress": False}
     how["observe"] = TimeCorrelations(longest=5 * cb.relaxation_time(chain), lags=100, waves=1)
     runs = [simulate(chain, seed=seed, **how) for seed in range(10)]
@@ -143,10 +134,10 @@ def two_rods(chain, t):
 @pytest.mark.parametrize("average", ["time", "ensemble"])
 def test_two_elastic_rods_remember_what_the_modulus_of_an_oscillator_does(average):
     chain = Chain(size=2)
-    how = {"duration": 40_000, "replicas": 2, "seed": 1}
+    how = {"duration": 20_000, "replicas": 2, "seed": 1}
     if average == "ensemble":
-        start = cb.equilibrium_states(chain, 1000, seed=1)
-        how = {"duration": 12, "replicas": 1000, "average": average, "every": 2.0, "start": start}
+        start = cb.equilibrium_states(chain, 500, seed=1)
+        how = {"duration": 12, "replicas": 500, "average": average, "every": 2.0, "start": start}
     run = simulate(chain, observe="time-correlations", progress=False, **how)
     along = "time" if average == "ensemble" else "lag"
     t = run[along].values
@@ -198,22 +189,11 @@ def test_pairs_are_those_of_all_snapshots_however_they_come():
     assert report["wave_velocity_autocorrelation"][1].shape == (3, 11)
 
 
-@pytest.mark.filterwarnings("ignore:.*spectra are NaN")
-@pytest.mark.compiled
-def test_all_waves_together_remember_what_all_rods_do():
-    chain = Chain(size=6, restitution=0.7)
-    run = simulate(chain, duration=1000, observe="time-correlations", progress=False)
-    of_rods, of_waves = run.velocity_autocorrelation, run.wave_velocity_autocorrelation
-    np.testing.assert_allclose(of_rods.sum("particle"), of_waves.sum("wave"), atol=1e-12)
-
-
 FINE = {"every": 0.1, "duration": 60, "replicas": 10}
 ASKED = [
-    ({"longest": 40}, FINE, 0.1, 40),
     ({"longest": 42}, FINE | {"every": 0.05}, 0.05, 42),
     ({"longest": 42, "lags": 100}, FINE, 0.5, 42),
     ({}, FINE, 0.1, 30),  # at most 300
-    ({"longest": 50}, {"every": 0.25}, 0.25, 50),
 ]
 
 
@@ -232,10 +212,8 @@ def test_the_first_lag_is_the_time_between_snapshots_and_the_last_the_longest(
 DECAYS = [
     Chain(size=1),
     Chain(size=1, damping=50.0),
-    Chain(size=30, restitution=0.8, gap=0.5),
     Chain(size=30),
     Chain(size=30, restitution=0.3),
-    Chain(size=10, spring="quadratic", gap=0.2),
     Chain(size=10, spring="quadratic", damping=10.0),
     Chain(size=30, damping=0.1, amplitude=3.0, gap=3.0),
 ]
@@ -246,7 +224,7 @@ DECAYS = [
 @pytest.mark.parametrize("chain", DECAYS)
 @pytest.mark.parametrize("parameters", [{}, {"longest": 2.0}])
 def test_the_lags_of_nobody_s_choice_resolve_the_first_decay(chain, parameters):
-    how = {"duration": 300, "particles": [(chain.size + 1) // 2], "progress": False}
+    how = {"duration": 200, "particles": [(chain.size + 1) // 2], "progress": False}
     run = simulate(chain, observe=TimeCorrelations(**parameters), **how)
     [speeds] = run.velocity_autocorrelation.values
     assert (speeds[1:3] > [0.5 * speeds[0], 0.2 * speeds[0]]).all()
@@ -265,8 +243,6 @@ def test_a_finer_time_between_snapshots_leaves_the_time_step_as_it_was():
 
 @pytest.mark.filterwarnings("ignore:.*spectra are NaN")
 def test_lags_that_a_run_cannot_have_are_refused():
-    with pytest.raises(ValueError, match=r"duration above the longest lag 41\.89, got 20"):
-        simulate(Chain(size=2), duration=20, observe="time-correlations", progress=False)
     with pytest.raises(ValueError, match="duration above the longest lag inf"):
         simulate(Chain(damping=0), observe="time-correlations", progress=False)
     chain, how = Chain(size=3), {"duration": 400, "every": 1.0, "progress": False}
