@@ -144,39 +144,30 @@ AS_NOBODY = [
 
 
 @pytest.fixture
-def nobody():
-    """Give what starts a command as a user without rights, and a folder that is that user's."""
+def folder():
+    """Give a folder that is that user's, if there is one."""
     # Not tmp_path: pytest makes folders that only whoever runs the tests may enter.
     with tempfile.TemporaryDirectory() as folder:
-        if os.getuid() != 0:
-            yield [], Path(folder)
-            return
-        os.chown(folder, NOBODY, NOBODY)
-        if subprocess.run([*AS_NOBODY, sys.executable, "-c", ""], check=False).returncode:
-            pytest.skip("cannot become another user here")
-        yield AS_NOBODY, Path(folder)
-
-
-@pytest.fixture
-def command(installed):
-    """Return the command, in an environment where nobody may write."""
-    _, binaries = installed
-    run("chmod", "-R", "a-w", binaries.parent)
-    yield binaries / "crazybilliards"
-    run("chmod", "-R", "u+w", binaries.parent)
-
-
-def nowhere(folder):
-    """Return an environment without a home or a cache folder that one may write to."""
-    kept = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA")}
-    home = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), "/proc/none")
-    return kept | home | {"MPLCONFIGDIR": str(folder)}
+        if os.getuid() == 0:
+            os.chown(folder, NOBODY, NOBODY)
+            if subprocess.run([*AS_NOBODY, sys.executable, "-c", ""], check=False).returncode:
+                pytest.skip("cannot become another user here")
+        yield Path(folder)
 
 
 @pytest.mark.torture
-def test_a_user_who_may_write_nowhere_else_gets_results_and_one_warning(command, nobody):
-    become, folder = nobody
-    done = run(*become, command, *RUN, cwd=folder, env=nowhere(folder))
+def test_a_user_who_may_write_nowhere_else_gets_results_and_one_warning(installed, folder):
+    """Neither into the environment nor into a home or a folder for the cache."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA")}
+    home = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), "/proc/none")
+    environment = kept | home | {"MPLCONFIGDIR": str(folder)}
+    _, binaries = installed
+    command = [*(AS_NOBODY if os.getuid() == 0 else []), binaries / "crazybilliards", *RUN]
+    run("chmod", "-R", "a-w", binaries.parent)
+    try:
+        done = run(*command, cwd=folder, env=environment)
+    finally:
+        run("chmod", "-R", "u+w", binaries.parent)
     assert {path.name for path in (folder / "results").iterdir()} == WRITTEN
     assert "wrote results/comparison.nc" in done.stdout
     assert done.stderr.count("NUMBA_CACHE_DIR") == 1, done.stderr

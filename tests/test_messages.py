@@ -13,6 +13,7 @@ from wrong_calls import GAMMA, WRONG_CALLS, WRONG_SWEEPS
 
 import crazybilliards as cb
 from crazybilliards.comparison.sweeps import read_sweep
+from crazybilliards.model.vocabulary import VOCABULARY, described, unit_of
 from crazybilliards.particles.running.replica import Replica
 from crazybilliards.reproduction import fits
 
@@ -156,3 +157,15 @@ def test_units_of_results_are_ones_own(names):
         np.testing.assert_array_equal(again.position, last.position)
     table = names["exact"].mean_position.values, names["exact"].velocity_width ** 2
     cb.force_balance(chain, velocity_variance=table)
+
+
+def test_units_are_not_those_of_a_unit_library(names):
+    for _, unit in VOCABULARY.values():
+        written = described("", unit)["units"]
+        for word in written.replace("^", " ").replace("/", " ").split():
+            assert word.strip("()").isdecimal() or word in ("R_0", "M_0", "t_0")
+    width = names["exact"].velocity_width
+    assert width.attrs["units"] == "R_0/t_0"
+    assert unit_of(width) == unit_of(width.assign_attrs(units="R_0/T_0")) == "R/t_0"
+    ax = cb.overlay({"exact": names["exact"]}, "velocity_width")
+    assert ax.get_ylabel().endswith("[$R/t_0$]")

@@ -1,6 +1,8 @@
-"""Signals: which are taken, what they do afterwards, and that handlers are restored."""
+"""Signals: which are taken, what they do afterwards; bars and what else is said meanwhile."""
 
+import io
 import signal
+from contextlib import redirect_stderr
 
 import pytest
 from forked import forked
@@ -9,6 +11,7 @@ from crazybilliards.kinetic import displaced, hydrodynamics
 from crazybilliards.model import Chain
 from crazybilliards.model.kernels import announced, kernel
 from crazybilliards.model.process import interrupts_noted, terminated_like_interrupted
+from crazybilliards.model.progress import progress_bar
 from crazybilliards.particles import simulate
 
 ENDING = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
@@ -92,3 +95,20 @@ def test_compiling_is_said_once_and_only_to_those_who_asked(capsys, tmp_path, mo
             second(1.0)
         third(1j)
         assert capsys.readouterr().err.count("compiling the kernels") == said
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+@pytest.mark.parametrize(
+    ("stream", "progress", "shown"),
+    [(Terminal(), True, True), (Terminal(), False, False), (io.StringIO(), True, False)],
+    ids=["terminal", "silenced", "file"],
+)
+def test_a_bar_is_shown_on_a_terminal_only(stream, progress, shown):
+    with redirect_stderr(stream):
+        assert list(progress_bar(progress, range(3), desc="simulating")) == [0, 1, 2]
+    assert ("simulating: 100%" in stream.getvalue()) == shown
+    assert shown or stream.getvalue() == ""

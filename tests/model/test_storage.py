@@ -7,10 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from small_sweeps import AtOnce
 
+from crazybilliards.comparison import load_sweep
+from crazybilliards.comparison.sweeps import read_sweep, run_cases
 from crazybilliards.model import Chain, chain_of, load, save
 from crazybilliards.model.storage import load_attributes, write_sealed
 from crazybilliards.model.vocabulary import result
+from crazybilliards.particles import simulate
 
 
 @pytest.fixture
@@ -49,6 +53,24 @@ def test_a_file_of_an_old_sweep_is_read_with_its_types(dataset, tmp_path):
     xr.testing.assert_identical(load(tmp_path / "old.nc"), counted)
     assert load(tmp_path / "old.nc")["count"].dtype == np.int64
     assert load_attributes(tmp_path / "old.nc") == counted.attrs
+
+
+def test_a_tilde_is_the_home_folder(dataset, tmp_path, monkeypatch):
+    home, here = tmp_path / "home", tmp_path / "here"
+    for folder in (home, here):
+        folder.mkdir()
+    for name in ("HOME", "USERPROFILE"):
+        monkeypatch.setenv(name, str(home))
+    monkeypatch.chdir(here)
+    assert save(dataset, "~/a/run.nc") == home / "a" / "run.nc"
+    assert load("~/a/run.nc").identical(dataset)
+    simulate(Chain(size=3), duration=100, checkpoint=Path("~/run.ckpt"), progress=False)
+    (home / "grid.toml").write_text("[grid]\nsize = [2, 3]\n[force_balance]\n")
+    sweep = read_sweep("~/grid.toml")
+    assert not run_cases(sweep, "~/sweep", AtOnce(), progress=False)
+    assert load_sweep("~/sweep").sizes["size"] == 2
+    assert (home / "run.ckpt").exists()
+    assert not list(here.iterdir())
 
 
 def test_two_writers_of_one_file_do_not_meet(dataset, tmp_path, monkeypatch):

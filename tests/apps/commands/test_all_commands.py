@@ -93,23 +93,12 @@ def test_bad_input_is_one_line_exit_two_and_nothing_written(
 
 
 # What is interrupted, a finished result of before, and what there is afterwards.
+PICTURES = {f"{name}-interrupted.png" for name in ("cloud", "profiles", "spacetime")}
+FOLLOWED = "--size 10 --replicas 100 --duration 40 --every 10"
 INTERRUPTED = {
-    "simulate": (
-        "--size 10 --duration 1e9 --output .",
-        "simulation.nc",
-        {"simulation-interrupted.nc"},
-    ),
-    "compare": (
-        "--size 10 --duration 1e9 --output .",
-        "comparison.nc",
-        {"cases"},  # the first chain was not done
-    ),
-    "relax": (
-        "--size 10 --replicas 100 --duration 40 --every 10 --output .",
-        "relaxation.nc",
-        {f"{name}-interrupted.png" for name in ("cloud", "profiles", "spacetime")}
-        | {"relaxation-interrupted.nc"},
-    ),
+    "simulate": ("--size 10 --duration 1e9", "simulation.nc", {"simulation-interrupted.nc"}),
+    "compare": ("--size 10 --duration 1e9", "comparison.nc", {"cases"}),  # no chain was done
+    "relax": (FOLLOWED, "relaxation.nc", PICTURES | {"relaxation-interrupted.nc"}),
 }
 
 
@@ -126,7 +115,7 @@ def test_a_signal_saves_what_was_computed_beside_a_finished_result(
     monkeypatch.chdir(tmp_path)
     (line, finished, left), number = INTERRUPTED[name], getattr(signal, sent)
     (tmp_path / finished).write_text("finished")
-    done = interrupted(name, *line.split(), number=number)
+    done = interrupted(name, *line.split(), "--output", ".", number=number)
     # Ctrl-C must also end a loop of a shell, which looks for the signal.
     assert done.returncode == (-number if sent == "SIGINT" else 128 + number), done.stderr
     assert done.stderr == "crazybilliards: interrupted\n"

@@ -25,6 +25,7 @@ def test_simulate_writes_what_the_function_returns(run, tmp_path):
     xr.testing.assert_identical(load(file), expected)
     assert f"completed at t = {expected.attrs['end_time']:g} t_0, time step 0.01 t_0" in done.stdout
     assert "error of the smallest W_v due to the time step" in done.stdout
+    assert "_error" not in done.stdout
     first = expected.isel(particle=0)
     assert f"{first.velocity_width:.4g} +- {first.velocity_width_error:.1g}" in done.stdout
     assert {path.name for path in tmp_path.iterdir()} == {"new", "state"}
