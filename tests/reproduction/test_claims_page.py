@@ -3,11 +3,13 @@
 import json
 import re
 from collections import Counter
+from contextlib import nullcontext
 from typing import get_args
 
 import pytest
 from small_sweeps import AtOnce
 
+from crazybilliards.comparison import sweeps
 from crazybilliards.comparison.sweeps import Case, run_cases
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.claims.report import all_cases, describe, markdown, reproduce
@@ -18,7 +20,8 @@ from crazybilliards.reproduction.figures import FIGURES, elastic, find_figures
 
 @pytest.fixture
 def short(monkeypatch):
-    """Make the runs of figures 16 and 17 short."""
+    """Make the runs of figures 16 and 17 short, and compute them in this process."""
+    monkeypatch.setattr(sweeps, "process_pool", lambda *_: nullcontext(AtOnce()))
     for runs in elastic._RUNS.values():
         monkeypatch.setitem(runs.effort, "quick", (1, {"duration": 5000.0}))
 
@@ -51,8 +54,21 @@ def test_parameters_are_described_by_what_is_not_the_default():
     ]
 
 
+def require_a_row_with_the_verdicts_of_each_part(page):
+    first, *parts = re.split("^## ", page, flags=re.MULTILINE)
+    rows = []
+    for part in parts:
+        heading = part.splitlines()[0]
+        anchor = "".join(c for c in heading.lower() if c.isalnum() or c in " -").replace(" ", "-")
+        counts = Counter(re.findall(r"^\* verdict: (.*)", part, re.MULTILINE))
+        counted = [f"{counts[name]} {name}" for name in get_args(Verdict) if counts[name]]
+        rows.append([f"[{heading}](#{anchor})", ", ".join(counted)])
+    table = re.findall(r"^\| (\[.*) \|$", first, re.MULTILINE)
+    assert [line.split(" | ") for line in table] == rows
+
+
 @pytest.mark.compiled
-def test_a_figure_its_claims_and_vector_graphics_by_the_command(run, tmp_path, monkeypatch, short):
+def test_figures_their_claims_and_the_page(run, tmp_path, monkeypatch, short):
     monkeypatch.chdir(tmp_path)
     status, facts, errors = run("reproduce", "16", "--vector", "svg", "--processes", "1", "--json")
     assert status == 0, errors
@@ -70,23 +86,10 @@ def test_a_figure_its_claims_and_vector_graphics_by_the_command(run, tmp_path, m
     assert run("reproduce", "arctanh", "--vector", "svg", "--json") == (status, facts, "")
     assert [path.stat().st_mtime_ns for path in folder.glob("cases/*")] == before
     assert (folder / "fig16_arctanh.svg").read_bytes() == picture
-
-
-@pytest.mark.compiled
-def test_the_page_shows_every_picture_and_counts_the_verdicts(tmp_path, short):
-    studies = find_figures("model,arctanh,density")
-    run_cases(all_cases(studies, "quick"), tmp_path, AtOnce(), progress=False)
-    page = markdown(list(reproduce(studies, "quick", tmp_path)), "quick")
-    first, *parts = re.split("^## ", page, flags=re.MULTILINE)
-    rows = []
-    for part in parts:
-        heading = part.splitlines()[0]
-        anchor = "".join(c for c in heading.lower() if c.isalnum() or c in " -").replace(" ", "-")
-        counts = Counter(re.findall(r"^\* verdict: (.*)", part, re.MULTILINE))
-        counted = [f"{counts[name]} {name}" for name in get_args(Verdict) if counts[name]]
-        rows.append([f"[{heading}](#{anchor})", ", ".join(counted)])
-    table = re.findall(r"^\| (\[.*) \|$", first, re.MULTILINE)
-    assert [line.split(" | ") for line in table] == rows
+    studies, cases = find_figures("model,arctanh,density"), folder / "cases"
+    run_cases(all_cases(studies, "quick"), cases, progress=False)
+    page = markdown(list(reproduce(studies, "quick", cases)), "quick")
+    require_a_row_with_the_verdicts_of_each_part(page)
     assert page.count("* verdict: ") == 1 + 4
     assert "amplitude 10" in page
     assert "**&lt;dx&gt; is described by B arctanh(C x)**" in page
