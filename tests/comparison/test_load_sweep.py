@@ -110,14 +110,20 @@ def test_a_description_with_flipped_bits_or_cut_is_another_sweep_or_refused(flip
     assert read_sweep(tmp_path / "grid.toml").grid
 
 
-def test_loading_gives_one_dataset_over_the_grid(tmp_path):
-    cases = sweep().cases()
-    run_cases(cases[:3], tmp_path, progress=False)  # the last one is missing
-    grid = load_sweep(tmp_path)
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory):
+    """Return a folder with all cases of a sweep but the last, these cases, and what is loaded."""
+    folder, cases = tmp_path_factory.mktemp("swept"), sweep().cases()[:3]
+    run_cases(cases, folder, progress=False)
+    return folder, cases, load_sweep(folder)
+
+
+def test_loading_gives_one_dataset_over_the_grid(swept, tmp_path):
+    folder, cases, grid = swept
     assert grid.velocity_width.dims == ("size", "restitution", "particle")
     assert grid.velocity_width.attrs["units"] == "R_0/t_0"
-    for case in cases[:3]:
-        own = case.load(tmp_path)
+    for case in cases:
+        own = case.load(folder)
         here = grid.sel(size=case.chain.size, restitution=case.chain.restitution)
         widths = here.velocity_width.values
         np.testing.assert_array_equal(widths[: case.chain.size], own.velocity_width)
@@ -126,33 +132,26 @@ def test_loading_gives_one_dataset_over_the_grid(tmp_path):
         np.testing.assert_array_equal(here.density.values[:places], own.density)
         np.testing.assert_array_equal(here.x.values[:places], own.x)
         assert here.status == "completed"
+        for name in ("time_step_error", "end_time"):
+            assert float(here[name]) == pytest.approx(own.attrs.get(name, np.nan), nan_ok=True)
     nothing = grid.sel(size=5, restitution=1.0)
     assert nothing.status == ""
     assert np.isnan(nothing.velocity_width).all()
     assert json.loads(grid.attrs["parameters"])["damping"] == 2
     # A sweep of one case has no grid.
-    assert load_sweep_of_one(tmp_path / "one").velocity_width.dims == ("particle",)
+    save(cases[0].load(folder), cases[0].file(tmp_path))
+    assert load_sweep(tmp_path).velocity_width.dims == ("particle",)
 
 
-def test_numbers_about_a_case_are_variables_over_the_grid(tmp_path):
-    grid = {"size": [3, 5], "restitution": [0.5, 1.0]}
-    cases = sweep(grid=grid).cases()
-    run_cases(cases[:3], tmp_path, progress=False)
-    loaded = load_sweep(tmp_path)
-    for case in cases[:3]:
-        own = case.load(tmp_path).attrs
-        here = loaded.sel(size=case.chain.size, restitution=case.chain.restitution)
-        for name in ("time_step_error", "end_time"):
-            assert float(here[name]) == pytest.approx(own.get(name, np.nan), nan_ok=True)
-    assert np.isfinite(loaded.time_step_error.sel(restitution=0.5)).all()
-    assert (loaded.time_step_error.sel(restitution=1.0)[:1] == 0).all()  # exact there
-    assert loaded.time_step_error.attrs["units"] == "1"
-    assert loaded.end_time.attrs == {"long_name": "time reached, warm-up included", "units": "t_0"}
-    assert not {"status", "end_time", "case"} & loaded.attrs.keys()
-    save(loaded, tmp_path / "grid" / "all.nc")
-    xr.testing.assert_identical(
-        load(tmp_path / "grid" / "all.nc").time_step_error, loaded.time_step_error
-    )
+def test_numbers_about_a_case_are_variables_over_the_grid(swept, tmp_path):
+    *_, grid = swept
+    assert np.isfinite(grid.time_step_error.sel(restitution=0.5)).all()
+    assert (grid.time_step_error.sel(restitution=1.0)[:1] == 0).all()  # exact there
+    assert grid.time_step_error.attrs["units"] == "1"
+    assert grid.end_time.attrs == {"long_name": "time reached, warm-up included", "units": "t_0"}
+    assert not {"status", "end_time", "case"} & grid.attrs.keys()
+    stored = load(save(grid, tmp_path / "all.nc"))
+    xr.testing.assert_identical(stored.time_step_error, grid.time_step_error)
 
 
 def test_errors_of_a_theory_are_variables_and_texts_that_differ_too(tmp_path):
@@ -197,6 +196,19 @@ def case_result(case):
     return xr.load_dataset(io.BytesIO(compute(case, case.source)))
 
 
-def load_sweep_of_one(folder):
-    run_cases(sweep().cases()[:1], folder, progress=False)
-    return load_sweep(folder)
+def test_a_tilde_is_the_home_folder(tmp_path, monkeypatch):
+    home, here = tmp_path / "home", tmp_path / "here"
+    for folder in (home, here):
+        folder.mkdir()
+    for name in ("HOME", "USERPROFILE"):
+        monkeypatch.setenv(name, str(home))
+    monkeypatch.chdir(here)
+    exact = cb.equilibrium(cb.Chain(size=3))
+    assert cb.save(exact, "~/a/exact.nc") == home / "a" / "exact.nc"
+    assert cb.load("~/a/exact.nc").identical(exact)
+    cb.simulate(cb.Chain(size=3), duration=100, checkpoint="~/run.ckpt", progress=False)
+    (home / "grid.toml").write_text("[grid]\nsize = [2, 3]\n[force_balance]\n")
+    assert not run_cases(read_sweep("~/grid.toml"), "~/sweep", progress=False)
+    assert cb.load_sweep("~/sweep").sizes["size"] == 2
+    assert (home / "run.ckpt").exists()
+    assert not list(here.iterdir())

@@ -1,8 +1,7 @@
 """Nothing at run time asks the network for anything, and no page that is written does.
 
 A hook in every Python process, workers included, takes down each connection, datagram and look-up
-of a name that goes beyond the loopback address, and refuses it. Where the system allows it, the
-processes have no network but a loopback of their own, which holds for compiled libraries too.
+of a name that goes beyond the loopback address, and refuses it.
 """
 
 import json
@@ -11,7 +10,6 @@ import re
 import signal
 import subprocess
 import sys
-from functools import cache
 
 import pytest
 
@@ -41,12 +39,6 @@ def guard(event, arguments):
 
 sys.addaudithook(guard)
 """
-# A network of its own, with nothing in it but loopback, which has to be switched on (IFF_UP).
-ALONE = (
-    "import fcntl, os, socket, struct, sys; "
-    "fcntl.ioctl(socket.socket(), 0x8914, struct.pack('16sh', b'lo', 1)); "
-    "os.execv(sys.executable, [sys.executable, *sys.argv[1:]])"
-)
 MAIN = "from crazybilliards.apps.commands.line import main; main()"
 SWEEP = """
 [grid]
@@ -70,17 +62,6 @@ cb.steady_state(chain.replace(restitution=0.95))
 """
 
 
-@cache
-def prefix():
-    """Return how to start Python: without a network if the system allows that."""
-    alone = ["unshare", "--net", "--map-root-user", sys.executable, "-c", ALONE]
-    try:
-        works = subprocess.run([*alone, "-c", ""], capture_output=True, check=False).returncode == 0
-    except FileNotFoundError:
-        works = False
-    return alone if works else [sys.executable]
-
-
 @pytest.fixture
 def guarded(tmp_path):
     """Return a function that runs Python in a folder, and afterwards see that nothing was asked."""
@@ -92,9 +73,8 @@ def guarded(tmp_path):
     environment = {**os.environ, "PYTHONPATH": str(site), "NETWORK_LOG": str(log)}
 
     def start(*arguments, **options):
-        return subprocess.Popen(
-            [*prefix(), *arguments], cwd=folder, env=environment, text=True, **options
-        )
+        command = [sys.executable, *arguments]
+        return subprocess.Popen(command, cwd=folder, env=environment, text=True, **options)
 
     start.log, start.folder = log, folder
     yield start
