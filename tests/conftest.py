@@ -48,6 +48,13 @@ def pytest_itemcollected(item):
         item.add_marker("torture")
 
 
+@pytest.fixture(autouse=True)
+def close_figures():
+    """Close the figures of each test."""
+    yield
+    plt.close("all")
+
+
 @pytest.fixture
 def ctrl_c(monkeypatch):
     """Let Ctrl-C come when a method was called often enough, however long a busy machine takes."""
@@ -83,5 +90,4 @@ def run(monkeypatch, capsys):
             main()
         return Ended(getattr(caught.value, "code", 130) or 0, *capsys.readouterr())
 
-    yield run
-    plt.close("all")
+    return run
