@@ -59,7 +59,11 @@ def end(child, number=None, group=False):
     if number is not None:
         (os.killpg if group else os.kill)(child, number)
     _, status = os.waitpid(child, 0)
-    until(lambda: not members(child))
+    try:
+        until(lambda: not members(child))
+    finally:
+        for left in members(child):
+            left.kill()
     return os.waitstatus_to_exitcode(status)
 
 
