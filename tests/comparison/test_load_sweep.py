@@ -194,21 +194,3 @@ def test_folders_that_hold_no_sweep(tmp_path):
 
 def case_result(case):
     return xr.load_dataset(io.BytesIO(compute(case, case.source)))
-
-
-def test_a_tilde_is_the_home_folder(tmp_path, monkeypatch):
-    home, here = tmp_path / "home", tmp_path / "here"
-    for folder in (home, here):
-        folder.mkdir()
-    for name in ("HOME", "USERPROFILE"):
-        monkeypatch.setenv(name, str(home))
-    monkeypatch.chdir(here)
-    exact = cb.equilibrium(cb.Chain(size=3))
-    assert cb.save(exact, "~/a/exact.nc") == home / "a" / "exact.nc"
-    assert cb.load("~/a/exact.nc").identical(exact)
-    cb.simulate(cb.Chain(size=3), duration=100, checkpoint="~/run.ckpt", progress=False)
-    (home / "grid.toml").write_text("[grid]\nsize = [2, 3]\n[force_balance]\n")
-    assert not run_cases(read_sweep("~/grid.toml"), "~/sweep", progress=False)
-    assert cb.load_sweep("~/sweep").sizes["size"] == 2
-    assert (home / "run.ckpt").exists()
-    assert not list(here.iterdir())

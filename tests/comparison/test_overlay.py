@@ -16,7 +16,7 @@ from crazybilliards.comparison.drawing import mark_clipped
 from crazybilliards.comparison.layout import house_style, legend_above, panels
 from crazybilliards.kinetic import equilibrium, steady_state
 from crazybilliards.model import Chain
-from crazybilliards.model.vocabulary import VOCABULARY, described, unit_of
+from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances
 
@@ -128,7 +128,7 @@ def test_what_both_have_is_drawn_over_its_dimension(pair, quantity, abscissa, la
         np.testing.assert_allclose(result.normalized_contact, between, rtol=1e-12)
 
 
-def test_units_are_the_own_ones_and_labels_of_axes_set_as_in_print():
+def test_labels_of_axes_are_set_as_in_print():
     """Indices and powers of names and units; a name in mathtext stays as it is."""
 
     def label(name, long_name, unit):
@@ -138,15 +138,9 @@ def test_units_are_the_own_ones_and_labels_of_axes_set_as_in_print():
 
     for name, (long_name, unit) in VOCABULARY.items():
         words = label(name, long_name, unit)
-        # They are not those of a library of units.
-        for word in described("", unit)["units"].replace("^", " ").replace("/", " ").split():
-            assert word.strip("()").isdecimal() or word in ("R_0", "M_0", "t_0")
         assert not set("_^") & set(re.sub(r"\$.*?\$", "", words)), words
         plt.figtext(0, 0, words)
     plt.gcf().draw_without_rendering()  # formulas are read only here
-    width = equilibrium(CHAIN).velocity_width
-    assert width.attrs["units"] == "R_0/t_0"
-    assert unit_of(width) == unit_of(width.assign_attrs(units="R_0/T_0")) == "R/t_0"
     assert label("kinetic_energy", "", "M R^2/t_0^2") == "kinetic energy $E$ [$M R^2/t_0^2$]"
     assert label("own", "<v_i v_i+1>", "1") == "<v$_{i}$ v$_{i+1}$>"
     assert label("own", "my_value $E^2$", "kg m^-1") == "my_value $E^2$ [kg m$^{-1}$]"
