@@ -44,24 +44,17 @@ def ask(address):
     return visitor
 
 
-@pytest.mark.parametrize(
-    ("name", "reason"),
-    [
-        ("192.0.2.1", "add --open-to-network"),
-        ("0.0.0.0", "all addresses"),
-        ("", "all addresses"),
-        ("::1", "cannot serve at"),
-        ("no name", "cannot serve at"),
-    ],
-)
-def test_an_open_or_impossible_address_is_refused(name, reason):
-    with pytest.raises(ValueError, match=reason):
-        serve(0, name)
-
-
-def test_a_port_that_is_taken_is_refused(address):
-    with pytest.raises(ValueError, match=r"cannot serve at 127\.0\.0\.1"):
-        serve(port_of(address), "127.0.0.1")
+def test_an_open_or_impossible_address_and_a_port_that_is_taken_are_refused(address):
+    for port, name, reason in (
+        (0, "192.0.2.1", "add --open-to-network"),
+        (0, "0.0.0.0", "all addresses"),
+        (0, "", "all addresses"),
+        (0, "::1", "cannot serve at"),
+        (0, "no name", "cannot serve at"),
+        (port_of(address), "127.0.0.1", r"cannot serve at 127\.0\.0\.1"),
+    ):
+        with pytest.raises(ValueError, match=reason):
+            serve(port, name)
 
 
 @pytest.mark.parametrize(
@@ -87,14 +80,11 @@ def test_nothing_else_is_served(address, path):
     assert get(address, "/" + "a" * 70_000)[0] == 414
 
 
-@pytest.mark.parametrize("headers", [{}, {"X-Requested-With": "chain", "Sec-Fetch-Site": "none"}])
-def test_theories_are_for_the_page_alone(address, headers):
-    assert get(address, "/theory?size=3", **headers)[0] == 403
-
-
-@pytest.mark.parametrize("query", ["size=x", "size=201", "size=", "os=1", "radius=2"])
-def test_no_theory_is_solved_of_what_is_no_chain_of_the_page(query):
-    assert list(theory.answer(query)) == ["refused"]
+def test_theories_are_for_the_page_alone_and_for_its_chains(address):
+    for headers in ({}, THEORY | {"Sec-Fetch-Site": "none"}):
+        assert get(address, "/theory?size=3", **headers)[0] == 403
+    for query in ("size=x", "size=201", "size=", "os=1", "radius=2"):
+        assert list(theory.answer(query)) == ["refused"]
 
 
 def require_words(answer, said):
