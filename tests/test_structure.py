@@ -11,7 +11,7 @@ from importlib.metadata import version
 
 import architecture
 import pytest
-from installation import EXPECTED, ROOMS, ROOT, run
+from installation import EXPECTED, ROOMS, ROOT
 
 import crazybilliards as cb
 
@@ -139,12 +139,6 @@ def test_an_old_name_says_where_it_is(name):
         getattr(cb, name)
     place = str(caught.value).partition(" is ")[2]
     assert place.startswith("gone: ") or eval(place).__name__ == name
-
-
-def test_the_import_is_quick():
-    script = "import time; t = time.process_time(); import crazybilliards; "
-    script += "print(time.process_time() - t)"
-    assert min(float(run(sys.executable, "-c", script).stdout) for _ in range(3)) < 0.05
 
 
 def test_the_citation_has_the_version_of_the_project():
