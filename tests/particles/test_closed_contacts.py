@@ -34,12 +34,12 @@ def runs(y, high=np.inf):
     return pairs
 
 
-def strengthened(kicks, y, clusters, strength, masses=1.0, high=np.inf):
+def strengthened(kicks, y, clusters, strength, masses, high):
     """Return kicks whose deviations from those that move their cluster as one get the strength.
 
     Clusters at the walls, at -+ ``high``, rest.
     """
-    kicks, masses = kicks.copy(), masses * np.ones(y.size)
+    kicks = kicks.copy()
     for begin, end in clusters:
         own, share = kicks[begin:end], masses[begin:end] / masses[begin:end].sum()
         together = 0 if abs(y[begin]) == high else own.sum() * share

@@ -116,7 +116,7 @@ def test_equal_masses_keep_their_speeds_and_two_masses_reach_maxwells_law():
         np.testing.assert_allclose((u**2).mean(axis=1), 1, rtol=1e-9)
         fourth = (u**4).mean(axis=1)
         error = fourth.std() / math.sqrt(replicas)
-        assert abs(fourth.mean() - 3 * size / (size + 2)) < 5 * error < 0.3
+        assert abs(fourth.mean() - 3 * size / (size + 2)) < 5 * error < 0.8
 
 
 @pytest.mark.compiled

@@ -9,12 +9,12 @@ from crazybilliards.particles import simulate
 from crazybilliards.particles.scales import centre_width, default_time_step
 
 
-def centre_and_border(chain, **settings):
-    """W_v of the middle tenth of the chain and of its two outermost rods, with errors."""
+def centre_and_border(chain, share=0.1, **settings):
+    """W_v of the chain's middle tenth, or share, and of its two outermost rods, with errors."""
     run = simulate(chain, replicas=2, observe="widths", progress=False, **settings)
     assert run.attrs["status"] == "completed"
     width, error = run.velocity_width.values, run.velocity_width_error.values
-    half = max(width.size // 20, 1)
+    half = max(int(share * width.size / 2), 1)
     middle = slice(width.size // 2 - half, width.size // 2 + half)
     return (
         np.sqrt(np.mean(width[middle] ** 2)),
@@ -65,7 +65,7 @@ def test_a_chain_that_diverges_keeps_what_was_measured(name):
         how = how | {"start": equilibrium_states(elastic, how["replicas"])}
     run = simulate(chain, **{"observe": ("widths", "energy")} | how, progress=False)
     assert run.attrs["status"] == "diverged"
-    assert 0 < run.time[-1] <= run.attrs["end_time"] < before
+    assert 0 < run.time[-1] <= run.attrs["end_time"] * (1 + 1e-12) < before
     assert "velocity_width" in run or "observe" in how
     assert run.kinetic_energy[-1] > 3 * run.kinetic_energy[0]
     for variable in run.data_vars:
@@ -95,13 +95,13 @@ ALIKE = {  # a restitution, and two ways to simulate it
 @pytest.mark.parametrize("name", ALIKE)
 def test_neither_the_merging_threshold_nor_the_method_matters(name):
     e, *ways = ALIKE[name]
-    (centre, error, border, border_error), (other, other_error, edge, edge_error) = (
-        centre_and_border(Chain(size=20, restitution=e), seed=seed, **how)
+    (whole, error, border, border_error), (other, other_error, edge, edge_error) = (
+        centre_and_border(Chain(size=20, restitution=e), share=1, seed=seed, **how)
         for seed, how in enumerate(ways)
     )
-    assert abs(centre - other) < 5 * np.hypot(error, other_error)
+    assert abs(whole - other) < 5 * np.hypot(error, other_error)
     assert abs(border - edge) < 5 * np.hypot(border_error, edge_error)
-    assert error < 0.01 * centre
+    assert error < 0.005 * whole
 
 
 def test_the_time_step_follows_what_has_to_be_resolved():

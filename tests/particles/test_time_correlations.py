@@ -232,9 +232,7 @@ def test_the_lags_of_nobody_s_choice_resolve_the_first_decay(chain, parameters):
 
 def test_a_finer_time_between_snapshots_leaves_the_time_step_as_it_was():
     chain = Chain(size=5, restitution=0.8)
-    widths, both = (
-        a_run(chain, observe=observe) for observe in ("widths", ["widths", "time-correlations"])
-    )
+    widths, both = a_run(chain), a_run(chain, observe=["widths", "time-correlations"])
     assert both.time_step == widths.time_step
     assert both.stride < widths.stride
     given = a_run(chain, observe="time-correlations", time_step=0.05)
