@@ -5,6 +5,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 OLDEST := .venv-lowest
+DASK   := .venv-cluster
 OUTPUT ?= results
 QUALITY ?= quick
 WHICH ?= all
@@ -19,14 +20,15 @@ ROOMS  := model particles kinetic comparison reproduction apps
 # imports, for 3 s more; tests, notebooks and pages start a few hundred processes.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: help run kernels test validate test-lowest torture coverage check audit reproduce lessons notebooks render browser docs \
+.PHONY: help run kernels test validate cluster test-lowest torture coverage check audit reproduce lessons notebooks render browser docs \
   linkcheck benchmark package clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make run        compare simulation and theory at e = 1; figures into $(OUTPUT)/"
 	@echo "make test       run the tests that are quick (4 min)"
-	@echo "make validate   run the others: statistics, long runs, kills, wheel, dask, the page in a browser (4 min)"
+	@echo "make validate   run the others: statistics, long runs, kills, wheel, the page in a browser (4 min)"
+	@echo "make cluster    run that of sweeps on a dask cluster (1 min)"
 	@echo "make test-lowest  run the tests with the oldest allowed version of every package"
 	@echo "make torture    test kills, full disks, bad input and long runs (15 min; docs/reliability.md)"
 	@echo "make coverage   show which lines the tests reach, kernels included (14 min)"
@@ -61,6 +63,11 @@ test: $(VENV)/installed-test
 
 validate: $(VENV)/installed-test
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python $(IN_TWO) -m validate
+
+# xarray imports dask wherever it is, in every process, so dask has an environment of its own.
+cluster:
+	$(MAKE) VENV=$(DASK) $(DASK)/installed-cluster
+	OPENBLAS_NUM_THREADS=1 $(DASK)/bin/python -m pytest -m cluster tests/comparison/test_executors.py
 
 # numba's cache belongs to one version, so each environment needs a cache of its own.
 test-lowest: $(OLDEST)/installed
@@ -184,9 +191,9 @@ $(OLDEST)/installed: pyproject.toml
 	$(PYTHON) -m venv $(OLDEST)
 	$(OLDEST)/bin/python -m pip install --quiet --upgrade pip setuptools uv
 	$(OLDEST)/bin/uv --system-certs pip install --quiet --python $(OLDEST)/bin/python --resolution lowest-direct \
-	  --editable ".[test]"
+	  --editable ".[cluster]"
 	touch $@
 
 clean:
-	rm -rf $(VENV) $(OLDEST) build .coverage docs/notebooks *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	rm -rf $(VENV) $(OLDEST) $(DASK) build .coverage docs/notebooks *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

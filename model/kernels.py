@@ -140,7 +140,8 @@ def inlined(
 ) -> Any:
     """Compile ``function`` into every kernel that calls it; a decorator.
 
-    For helpers with many arrays, for which the call costs more than the work. ``fused``: as
+    For helpers with many arrays, for which the call costs more than the work. numba then inlines
+    also the kernels that it calls, if they are compiled because of that call. ``fused``: as
     in :func:`kernel`. ``once``: one kernel calls it, without a ``*``. It becomes a part of that
     kernel before anything is compiled. Otherwise it is compiled alone first, and all that it calls
     is optimised once more with it, which takes seconds for what calls all operators. It is not for

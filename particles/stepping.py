@@ -59,11 +59,12 @@ def kick(y, v, anchors, kicks, step, part):  # type: ignore[no-untyped-def]
         v[i] = decay * (v[i] - before * pull) - after * pull + noise * kicks[i]
 
 
-@kernel
+@inlined
 def draw_kicks(noise, kicks, width, due):  # type: ignore[no-untyped-def]
     """Fill ``kicks`` for as many of the ``due`` steps of ``width`` numbers as have room.
 
-    Return for how many. Several are drawn at once, because one by one is slower.
+    Return for how many. Several are drawn at once, because one by one is slower. The noise is
+    inlined (``model/kernels.py``) in whichever kernel of this file is compiled first.
     """
     rows = min(kicks.size // width, due)
     fill(noise, kicks[: rows * width])

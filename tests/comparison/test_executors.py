@@ -76,12 +76,14 @@ def test_what_kills_its_process_twice_has_failed_and_costs_nothing_else(pool):
     assert [future.result() for future in futures] == [0, 1, 2, 4, 5]
 
 
-@pytest.mark.validate
+@pytest.mark.cluster
 def test_a_dask_cluster_gives_the_same_results_and_may_lose_a_worker(here, tmp_path):
-    from distributed import Client, LocalCluster
-
+    distributed = pytest.importorskip("distributed", reason="make cluster installs dask")
     one = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
-    with LocalCluster(**one) as cluster, Client(cluster, set_as_default=False) as client:
+    with (
+        distributed.LocalCluster(**one) as cluster,
+        distributed.Client(cluster, set_as_default=False) as client,
+    ):
         killing = killer(tmp_path, psutil.Process(next(iter(client.run(os.getpid).values()))))
         killing.start()
         assert run_cases(CASES, tmp_path, client.get_executor(), **QUIET) == {}
