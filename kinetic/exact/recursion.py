@@ -45,7 +45,7 @@ class Recursion:
         return self.spacing * (self.first[i] + np.arange(self.log_f.shape[1]))
 
     def log_z(self, i: int) -> Array:
-        """Return log Z of the rods up to number i on the window of i."""
+        """Return log Z of the rods up to number i on the window of i; spacings are its lengths."""
         if self.chain.exchangeable:
             return np.asarray((i + 1) * self.log_f[0] - gammaln(i + 2))
         return np.asarray(self.log_f[i])
@@ -67,9 +67,9 @@ class Recursion:
         log_p = self.log_weight(i) + self.log_below(i)
         log_p += self.log_below(self.chain.size - 1 - i)[::-1]
         p = np.exp(log_p - log_p.max())
-        total = self.spacing * (weights(p.size) @ p)
+        total = weights(p.size) @ p
         d = self.nodes(i) - self.chain.reduced_anchors[i]
-        return d, p / total, float(log_p.max() + np.log(total))
+        return d, p / (self.spacing * total), float(log_p.max() + np.log(total))
 
 
 def weights(nodes: int) -> Array:
@@ -122,7 +122,6 @@ def recursion_of(chain: Chain) -> Recursion:
     recursion = Recursion(chain, spacing, middles.astype(np.int64) - half, log_f)
     for i in range(rods):
         log_f[i] = _log_cumulative(recursion.log_weight(i) + recursion.log_below(i), i)
-        log_f[i] += np.log(spacing)
     return recursion
 
 
