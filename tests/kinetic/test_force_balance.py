@@ -23,8 +23,7 @@ def closed_form(chain, quantiles):
 
 
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
-@pytest.mark.parametrize("amplitude", [0.1, 1.0, 30.0, 100.0])
-@pytest.mark.parametrize("size", [2, 100, 100_000])
+@pytest.mark.parametrize(("size", "amplitude"), [(2, 100.0), (100, 1.0), (100_000, 0.1)])
 def test_without_gap_it_is_the_closed_form(size, amplitude, spring):
     chain = Chain(size=size, amplitude=amplitude, spring=spring)
     theory = force_balance(chain)
@@ -42,7 +41,7 @@ def test_without_gap_it_is_the_closed_form(size, amplitude, spring):
 
 
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
-@pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
+@pytest.mark.parametrize("gap", [0.2, 1.0])
 def test_it_satisfies_the_papers_equation(gap, spring):
     """Rho' = -F(<dx>)/(m W^2) rho (1 - 2 R rho)^2 and <dx> = x - (2R + g)(N - L/2), N' = rho."""
     chain = Chain(size=50, amplitude=30, gap=gap, spring=spring, radius=1.3)
@@ -59,9 +58,8 @@ def test_it_satisfies_the_papers_equation(gap, spring):
 
 
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
-@pytest.mark.parametrize("amplitude", [0.1, 1.0, 100.0])
-@pytest.mark.parametrize("gap", [0.0, 1e-6, 0.2, 3.0])
-@pytest.mark.parametrize("size", [2, 101, 100_000])
+@pytest.mark.parametrize("amplitude", [0.1, 100.0])
+@pytest.mark.parametrize(("size", "gap"), [(2, 0.2), (101, 1e-6), (101, 3.0), (100_000, 0.2)])
 def test_it_just_works(size, gap, amplitude, spring):
     chain = Chain(size=size, gap=gap, amplitude=amplitude, spring=spring)
     theory = force_balance(chain)
@@ -106,7 +104,7 @@ def test_prescribing_the_closed_form_displacement_gives_the_closed_form_density(
     assert theory.attrs["residual"] < 1e-7
 
 
-@pytest.mark.parametrize("amplitude", [1.0, 10.0, 100.0])
+@pytest.mark.parametrize("amplitude", [1.0, 100.0])
 def test_the_arctanh_closure_is_a_wright_omega_function(amplitude):
     """Ln rho_y + 2R rho_y + Psi/s^2 is constant, Psi the integral of B arctanh(C x)."""
     chain = Chain(amplitude=amplitude)

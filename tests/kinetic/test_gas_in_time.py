@@ -102,14 +102,14 @@ def test_a_jump_of_the_flow_meets_the_viscous_pressure():
 @pytest.mark.compiled
 @pytest.mark.parametrize(
     ("chain", "factor", "replicas"),
-    [(Place(5, 0.8, 0.5).chain(), 1.2, 4000), (Place(20, 1.03, 1.0).chain(), 1.2, 1000)],
+    [(Place(5, 0.8, 0.5).chain(), 1.2, 2000), (Place(20, 1.03, 1.0).chain(), 1.2, 500)],
 )
 @pytest.mark.filterwarnings("ignore:the error of the kinetic energy")
 def test_the_kinetic_energy_is_that_of_simulated_chains(chain, factor, replicas):
     elastic = chain.replace(restitution=1.0)
     states = equilibrium_states(elastic, replicas, seed=1)
     y = factor * elastic.reduced(states.position.values)
-    times = {"duration": 12.0, "every": 1.0, "progress": False}
+    times = {"duration": 8.0, "every": 1.0, "progress": False}
     run = simulate(
         chain,
         start=states.assign(position=(states.position.dims, elastic.physical(y))),
@@ -127,8 +127,9 @@ def test_the_kinetic_energy_is_that_of_simulated_chains(chain, factor, replicas)
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("frame", ["label", "eulerian"])
-@pytest.mark.parametrize("kind", [None, "evolving"])
+@pytest.mark.parametrize(
+    ("frame", "kind"), [("label", "evolving"), ("label", None), ("eulerian", "evolving")]
+)
 def test_the_kinetic_energy_is_that_of_flow_and_heat(frame, kind):
     chain = Chain(size=20, amplitude=5)
     times = {"duration": 6.0, "every": 1.0}
@@ -169,32 +170,11 @@ def test_in_the_steady_state_heat_flows_to_where_collisions_take_it():
 @pytest.mark.filterwarnings("ignore:the error of the kinetic energy")
 def test_divergence_is_a_result():
     chain = Chain(size=160, restitution=1.05, damping=4.0)
-    flow = hydrodynamics(chain, displaced(chain, 0.1), 20.0, every=0.1, **EVOLVING)
+    flow = hydrodynamics(chain, displaced(chain, 0.1), 20.0, every=0.5, **EVOLVING)
     assert flow.attrs["status"] == "diverged"
     assert flow.attrs["end_time"] < 20
     assert np.isfinite(flow.kinetic_energy).all()
     assert float(flow.kinetic_energy[-1]) > float(flow.kinetic_energy[0])
-
-
-@pytest.mark.compiled
-def test_a_collapse_is_refused_with_its_time():
-    chain = Chain(size=300, restitution=0.9)
-    start = force_balance(chain.replace(restitution=1))
-    with pytest.raises(ValueError, match=r"beyond t = 4\.\d: the fluid collapses to less than"):
-        hydrodynamics(chain, start, 20.0, **EVOLVING)
-
-
-def test_what_the_gas_does_not_know_is_refused_by_name():
-    chain = Chain(size=10, restitution=0.9)
-    box = chain.replace(box=40)
-    for changed, frame, message in (
-        (chain.replace(mass_ratio=3), "label", "rods of two masses in inelastic collisions"),
-        (box.replace(wall_restitution=0.9), "label", "wall_restitution must be 1"),
-        (chain, "eulerian", "restitution must be 1, got 0.9; velocity_variance='evolving' in"),
-    ):
-        start = force_balance(changed.replace(restitution=1, wall_restitution=1))
-        with pytest.raises(ValueError, match=message):
-            hydrodynamics(changed, start, 1.0, frame=frame, **EVOLVING)
 
 
 def test_collisions_of_two_masses_damp_the_heat_flux_and_those_of_one_do_not():
@@ -202,7 +182,7 @@ def test_collisions_of_two_masses_damp_the_heat_flux_and_those_of_one_do_not():
     assert decay_of_two_masses(1.0) == pytest.approx(0, abs=1e-12)
     assert decay_of_two_masses(3.0) == pytest.approx(decay_of_two_masses(1 / 3), rel=1e-12)
     light, heavy = 0.5, 1.5
-    v, u = np.random.default_rng(1).normal(size=(2, 1_000_000)) / [[light**0.5], [heavy**0.5]]
+    v, u = np.random.default_rng(1).normal(size=(2, 250_000)) / [[light**0.5], [heavy**0.5]]
     centre = (light * v + heavy * u) / 2
     after, before = ((2 * centre - v, 2 * centre - u), (v, u))
 
@@ -211,19 +191,9 @@ def test_collisions_of_two_masses_damp_the_heat_flux_and_those_of_one_do_not():
         return sum(each**3 - 3 * each for each in scaled)
 
     drawn = -np.abs(v - u) * (third(after) - third(before)) * third(before) / 12
-    error = drawn.std() / 1000
+    error = drawn.std() / 500
     assert decay_of_two_masses(3.0) == pytest.approx(drawn.mean(), abs=5 * error)
-    assert error < 0.03
-
-
-def at_rest(chain, _):
-    return force_balance(chain)
-
-
-def stated(start=compressed, by=0.9, **changes):
-    chain = Chain(**({"size": 50, "restitution": 0.95} | changes))
-    flow = hydrodynamics(chain, start(chain.replace(restitution=1.0), by), 0.1, **EVOLVING)
-    return flow.attrs["kinetic_energy_model_error"]
+    assert error < 0.06
 
 
 def rows(path):
@@ -231,36 +201,59 @@ def rows(path):
         return list(csv.DictReader(file))
 
 
-@pytest.mark.compiled
+def chain_and_start(start=compressed, by=0.9, **changes):
+    chain = Chain(**({"size": 50, "restitution": 0.95} | changes))
+    return chain, start(chain.replace(restitution=1.0), by)
+
+
+def stated(*release, **changes):
+    chain, _ = chain_and_start(**changes)
+    return accuracy.expected_in_time(chain, accuracy.Release(*release))
+
+
 def test_the_gas_states_the_largest_error_of_its_range():
     for row in rows("kinetic/measured/relaxation.csv"):
         least_gap, gap, least, most = (float(value) for value in list(row.values())[3:7])
         place = Place(50, 1 - (least + most) / 100, 1.0, 0.9, gap=(least_gap + gap) / 2)
         chain = place._replace(spring={"2": "linear", "3": "quadratic"}[row["n"]]).chain()
-        start = compressed(chain.replace(restitution=1), 0.9)
-        flow = hydrodynamics(chain, start, 0.1, **EVOLVING)
         error = float(row["error"]) + 2 * float(row["standard error"])
-        assert flow.attrs["kinetic_energy_model_error"] == pytest.approx(error), row
-    assert stated(restitution=1.0, by=0.3) == 0
-    assert stated(displaced, 1.0) == stated()
+        found = accuracy.expected_in_time(chain, accuracy.Release(0.9, 0.0, 1.0))
+        assert found == pytest.approx(error), row
+    assert stated(0.3, 0.0, 1.0, restitution=1.0) == 0
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     "changes",
     [
         *({"gap": 1.0}, {"size": 10}, {"size": 300}, {"damping": 4.0}),
-        *({"damping": 0.5}, {"restitution": 0.7}, {"restitution": 1.03}, {"by": 1.5}),
-        *(
-            {"start": displaced, "by": 3.0},
-            {"size": 20, "box": 60.0, "amplitude": 10.0, "start": at_rest},
-        ),
-        {"start": lambda chain, _: force_balance(chain.replace(amplitude=2.0))},
+        *({"damping": 0.5}, {"restitution": 0.7}, {"restitution": 1.03}),
     ],
+    ids=repr,
 )
-def test_what_was_not_measured_is_unknown(changes):
-    with pytest.warns(UnmeasuredWarning, match="the error of the kinetic energy was not measured"):
-        assert np.isnan(stated(**changes))
+def test_chains_that_were_not_measured_have_no_known_error(changes):
+    assert np.isnan(stated(0.9, 0.0, 1.0, **changes))
+
+
+def at_rest(chain, _):
+    return force_balance(chain)
+
+
+@pytest.mark.compiled
+def test_the_error_is_that_of_the_chain_and_the_start():
+    def found(**changes):
+        chain, start = chain_and_start(**changes)
+        return hydrodynamics(chain, start, 0.1, **EVOLVING).attrs["kinetic_energy_model_error"]
+
+    assert found() == pytest.approx(stated(0.9, 0.0, 1.0))
+    assert found(start=displaced, by=1.0) == found()
+    for changes in (
+        {"by": 1.5},
+        {"start": displaced, "by": 3.0},
+        {"size": 20, "box": 60.0, "amplitude": 10.0, "start": at_rest},
+        {"start": lambda chain, _: force_balance(chain.replace(amplitude=2.0))},
+    ):
+        with pytest.warns(UnmeasuredWarning, match="error of the kinetic energy was not measured"):
+            assert np.isnan(found(**changes))
 
 
 def test_chains_released_later_keep_to_the_stated_error():

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from clumps import two_clumps
 
 from crazybilliards.kinetic import compressed, displaced, equilibrium, force_balance, hydrodynamics
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
@@ -26,14 +25,13 @@ def l1_distance(one, other):
 
 
 @pytest.mark.compiled
-@FLUIDS
-@pytest.mark.parametrize("stretch", [0.3, 2.0])
+@pytest.mark.parametrize(("fluid", "stretch"), [(None, 0.3), ("evolving", 0.3), ("evolving", 2.0)])
 def test_the_label_frame_is_exact_for_the_breathing_cloud(fluid, stretch):
     chain = Chain(size=50)
     flow = hydrodynamics(
-        chain, compressed(chain, stretch), 40, every=2, velocity_variance=fluid, **QUIET
+        chain, compressed(chain, stretch), 20, every=2, velocity_variance=fluid, **QUIET
     )
-    exact = breathing_cloud(chain, 40, every=2, stretch=stretch, evolving=fluid is not None)
+    exact = breathing_cloud(chain, 20, every=2, stretch=stretch, evolving=fluid is not None)
     s = chain.thermal_length
     np.testing.assert_allclose(flow.cloud_width, exact.cloud_width, atol=2e-5 * s)
     middle = flow.velocity_variance.isel(x=flow.sizes["x"] // 2)
@@ -46,7 +44,7 @@ def test_the_label_frame_is_exact_for_the_breathing_cloud(fluid, stretch):
 def test_a_shift_swings_as_one_oscillator_if_the_springs_are_linear(frame, spring):
     chain = Chain(size=20, gap=0.3, amplitude=3, spring=spring)
     start = displaced(chain, 2.0)
-    flow = hydrodynamics(chain, start, 12, every=1, frame=frame, **QUIET)
+    flow = hydrodynamics(chain, start, 8, every=1, frame=frame, **QUIET)
     half = chain.damping / (2 * chain.mass)
     swing = np.sqrt(chain.stiffness / chain.mass - half**2)
     t = flow.time
@@ -64,18 +62,14 @@ def test_a_shift_swings_as_one_oscillator_if_the_springs_are_linear(frame, sprin
     [
         (10, 30, 0.0, "linear"),
         (100, 1, 0.2, "linear"),
-        pytest.param(100, 100, 1.0, "linear", marks=pytest.mark.validate),
-        pytest.param(1000, 10, 0.0, "linear", marks=pytest.mark.validate),
+        pytest.param(500, 10, 0.0, "linear", marks=pytest.mark.validate),
         (100, 10, 0.2, "quadratic"),
-        pytest.param(10, 30, 1.0, "quadratic", marks=pytest.mark.validate),
-        pytest.param(100, 100, 0.0, "quadratic", marks=pytest.mark.validate),
-        pytest.param(100, 1, 1.0, "quadratic", marks=pytest.mark.validate),
     ],
 )
 def test_relaxation_ends_in_the_force_balance(size, amplitude, gap, spring):
     chain = Chain(size=size, amplitude=amplitude, gap=gap, spring=spring)
     # Quadratic springs are soft near their anchors: a plateau takes ages to relax.
-    hotter = 1.5 if spring == "linear" or gap == 0 else 1.0
+    hotter = 1.5 if spring == "linear" else 1.0
     start = force_balance(chain.replace(amplitude=hotter * amplitude))
     flow = hydrodynamics(chain, start, 100, every=100, velocity_variance="evolving", **QUIET)
     theory = force_balance(chain)
@@ -89,8 +83,9 @@ def test_relaxation_ends_in_the_force_balance(size, amplitude, gap, spring):
         assert flow.attrs["residual"] < 1e-3
 
 
-@pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
-@pytest.mark.parametrize("amplitude", [pytest.param(1, marks=pytest.mark.compiled), 30])
+@pytest.mark.parametrize(
+    ("amplitude", "gap"), [pytest.param(1, 0.2, marks=pytest.mark.compiled), (30, 0.0), (30, 1.0)]
+)
 def test_the_eulerian_frame_rests_in_the_force_balance(amplitude, gap):
     chain = Chain(size=10, amplitude=amplitude, gap=gap)
     theory = force_balance(chain)
@@ -105,20 +100,19 @@ def test_the_eulerian_frame_rests_in_the_force_balance(amplitude, gap):
 def test_the_eulerian_frame_is_of_second_order(fluid):
     """L1 distance to the label frame, which is exact for a breathing cloud."""
     chain = Chain(size=100, amplitude=10)
-    arguments = {"duration": 4, "every": 2, "velocity_variance": fluid} | QUIET
+    arguments = {"duration": 3, "every": 1, "velocity_variance": fluid} | QUIET
     start = compressed(chain, 0.6)
     exact = hydrodynamics(chain, start, **arguments)
     errors = []
-    for cells in (400, 800):
+    for cells in (300, 600):
         flow = hydrodynamics(chain, start, frame="eulerian", cells=cells, **arguments)
         errors.append(l1_distance(flow, exact)[1:].max())
     assert np.log2(errors[0] / errors[1]) > 1.8
-    assert errors[1] < 1e-4
+    assert errors[1] < 2e-4
 
 
 @pytest.mark.compiled
-@FLUIDS
-@pytest.mark.parametrize("gap", [0.2, 1.0])
+@pytest.mark.parametrize(("gap", "fluid"), [(0.2, "evolving"), (1.0, None)])
 def test_the_two_frames_agree_with_a_gap(gap, fluid):
     chain = Chain(size=20, amplitude=5, gap=gap)
     arguments = {"duration": 6, "every": 1, "velocity_variance": fluid} | QUIET
@@ -130,10 +124,21 @@ def test_the_two_frames_agree_with_a_gap(gap, fluid):
     np.testing.assert_allclose(label.cloud_width, eulerian.cloud_width, atol=0.01 * s)
 
 
+def two_clumps(chain, distance, speed):
+    """Return the stationary state cut in half: clumps that approach one another."""
+    whole = displaced(chain, 0.0)
+    start = displaced(chain, distance / 2)  # its grid holds both
+    x, half = start.x.values, chain.size / 2
+    inside = np.maximum(np.abs(x) - distance / 2, 0.0)
+    density = np.where(np.abs(x) < distance / 2, 0.0, np.interp(inside, whole.x, whole.density))
+    label = half + np.sign(x) * (np.interp(inside, whole.x, whole.label) - half)
+    velocity = -np.sign(x) * speed
+    return start.assign(density=("x", density), label=("x", label), flow_velocity=("x", velocity))
+
+
 @pytest.mark.compiled
 @pytest.mark.validate
-@pytest.mark.parametrize("frame", ["label", "eulerian"])
-@FLUIDS
+@pytest.mark.parametrize(("frame", "fluid"), [("label", "evolving"), ("eulerian", None)])
 def test_shocks_of_two_clumps_survive(frame, fluid):
     chain = Chain(size=20, amplitude=5)
     s, W = chain.thermal_length, chain.free_velocity_width
@@ -202,23 +207,22 @@ def shock_tube(chain):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("stiffness", [1e-4, 1e-6, pytest.param(1e-8, marks=pytest.mark.validate)])
-def test_a_shock_does_not_depend_on_a_very_soft_spring(stiffness):
+def test_a_shock_does_not_depend_on_a_very_soft_spring():
     """The cells resolve the rods and the waves, which are short against the thermal length."""
     damping = 1e-4
-    chain = Chain(size=400, radius=0.5, mass=1.0, stiffness=stiffness, damping=damping)
+    chain = Chain(size=200, radius=0.5, mass=1.0, stiffness=1e-6, damping=damping)
     chain = chain.replace(amplitude=np.sqrt(2 * damping))
     flow = hydrodynamics(
-        chain, shock_tube(chain), 20, every=20, velocity_variance=1.0, frame="eulerian", **QUIET
+        chain, shock_tube(chain), 10, every=10, velocity_variance=1.0, frame="eulerian", **QUIET
     ).isel(time=-1)
-    behind = (flow.x > 2) & (flow.x < 8)
+    behind = (flow.x > 1) & (flow.x < 4)
     assert float(flow.flow_velocity[behind].median()) == pytest.approx(0.908, abs=0.01)
     assert float(flow.density[behind].median()) == pytest.approx(0.378, abs=0.005)
 
 
 @pytest.mark.compiled
 def test_a_short_time_does_not_need_narrower_cells_than_the_rods():
-    chain = Chain(size=1000)
+    chain = Chain(size=500)
     start = two_clumps(chain, 3.0, 0.5)
     flow = hydrodynamics(chain, start, 0.01, every=0.01, frame="eulerian", **QUIET)
     assert flow.attrs["status"] == "completed"

@@ -29,17 +29,6 @@ def test_the_number_of_cells_that_is_called_enough_is():
     np.testing.assert_allclose(rough.centre, fine.centre, atol=0.01 * chain.thermal_length)
 
 
-@pytest.mark.parametrize("call", [(), (100.0,), (None, 100.0)])
-def test_a_missing_start_is_explained(call):
-    """A duration in its place is the usual mistake."""
-    with pytest.raises(ValueError, match="start must be a result with density over x") as caught:
-        hydrodynamics(Chain(size=5), *call, **QUIET)
-    for name in ("displaced(", "compressed(", "force_balance"):
-        assert name in str(caught.value)
-    with pytest.raises(ValueError, match="duration must be a number, got None"):
-        hydrodynamics(Chain(size=5), displaced(Chain(size=5), 1.0), **QUIET)
-
-
 @pytest.mark.compiled
 def test_ctrl_c_keeps_the_times_before(ctrl_c):
     chain = Chain(size=100)
@@ -80,31 +69,15 @@ def test_what_ctrl_c_ended_is_not_solved_again(variance, monkeypatch):
         hydrodynamics(chain, displaced(chain, 1.0), **arguments, **QUIET)
 
 
-@pytest.mark.parametrize("spring", ["linear", "quadratic"])
-@pytest.mark.parametrize("variance", [None, "evolving"])
-def test_rods_that_are_too_fast_are_refused_before_any_work(spring, variance, monkeypatch):
-    monkeypatch.setattr(eulerian_frame, "solve", lambda *_, **__: pytest.fail("it works"))
-    chain = Chain(size=10, spring=spring)
-    arguments = {"velocity_variance": variance, "frame": "eulerian"} | QUIET
-    moving = displaced(chain, 0.0)
-    moving = moving.assign(flow_velocity=moving.flow_velocity + 100.0)
-    for start in (displaced(chain, 200.0), displaced(chain, -80.0), moving):
-        with pytest.raises(ValueError, match=r"up to .* times the free velocity .*frame='label'"):
-            hydrodynamics(chain, start, 6.0, **arguments)
-    if variance and spring == "linear":
-        with pytest.raises(ValueError, match="too fast"):
-            hydrodynamics(chain, displaced(chain, 30.0), 6.0, **arguments)
-
-
 @pytest.mark.compiled
 def test_the_first_steps_resolve_what_the_springs_draw(monkeypatch):
     chain, whole, calls = Chain(size=5), eulerian_frame.solve, []
     monkeypatch.setattr(
         eulerian_frame, "solve", lambda *a, **how: calls.append(how["dt"]) or whole(*a, **how)
     )
-    flow = hydrodynamics(chain, displaced(chain, 25.0), 4.0, every=1.0, frame="eulerian", **QUIET)
+    flow = hydrodynamics(chain, displaced(chain, 25.0), 2.0, every=1.0, frame="eulerian", **QUIET)
     assert len(calls) == 1
-    exact = hydrodynamics(chain, displaced(chain, 25.0), 4.0, every=1.0, **QUIET)
+    exact = hydrodynamics(chain, displaced(chain, 25.0), 2.0, every=1.0, **QUIET)
     np.testing.assert_allclose(flow.centre, exact.centre, atol=0.02 * 25)
 
 
@@ -129,10 +102,9 @@ def test_a_plain_density_profile_is_a_start():
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("frame", ["label", "eulerian"])
-@pytest.mark.parametrize("duration", [1e-12, 1e-50])
-def test_the_shortest_duration_is_not_taken_for_ctrl_c(frame, duration):
+def test_the_shortest_duration_is_not_taken_for_ctrl_c(frame):
     """py-pde drops outputs that are close together; a missing output is no sign of Ctrl-C."""
-    chain = Chain(size=5)
+    chain, duration = Chain(size=5), 1e-50
     flow = hydrodynamics(chain, displaced(chain, 2.0), duration, frame=frame, **QUIET)
     assert flow.attrs["status"] == "completed"
     assert flow.sizes["time"] == 101
@@ -140,33 +112,6 @@ def test_the_shortest_duration_is_not_taken_for_ctrl_c(frame, duration):
     # A shifted state at rest begins to move with the acceleration -k/m times its shift.
     speed = -2.0 * chain.stiffness / chain.mass * duration
     np.testing.assert_allclose(flow.mean_velocity[-1].mean(), speed, rtol=0.02)
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize("fluid", [None, "evolving"])
-def test_trackers_of_py_pde_see_positions_and_named_fields(fluid, monkeypatch):
-    """In the units of the chain: the fields add up to the rods and to their moments."""
-    chain, seen = Chain(size=20, amplitude=5), []
-    append = MemoryStorage.append
-
-    def watched(storage, field, time):
-        seen.append((time, field.copy()))
-        append(storage, field, time)
-
-    monkeypatch.setattr(MemoryStorage, "append", watched)
-    arguments = {"every": 2.0, "frame": "eulerian", "velocity_variance": fluid} | QUIET
-    flow = hydrodynamics(chain, displaced(chain, 3.0), 4.0, **arguments)
-    np.testing.assert_allclose([time for time, _ in seen], flow.time)
-    for (_, state), width, rods in zip(seen, flow.cloud_width, flow.mean_velocity, strict=True):
-        assert state.labels == ["rho", "rho V", "E"][: 2 if fluid is None else 3]
-        (left, right), *_ = state.grid.axes_bounds
-        assert left == -right
-        assert right > chain.anchors[-1] + 9 * width
-        assert state["rho"].integral == pytest.approx(chain.size)
-        assert state["rho V"].integral == pytest.approx(float(rods.sum()), abs=0.02)
-    x = seen[0][1].grid.axes_coords[0]
-    there = np.interp(x, flow.x, flow.density[0])
-    np.testing.assert_allclose(seen[0][1]["rho"].data, there, atol=2e-3)
 
 
 def test_an_output_that_py_pde_drops_is_an_error():

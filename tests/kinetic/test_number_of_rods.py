@@ -22,7 +22,7 @@ AT_WIDE_GAPS = [
 ]
 
 
-@pytest.mark.parametrize(("size", "gap"), [(2, 100.0), (100, 20.0), (1, 100.0)])
+@pytest.mark.parametrize(("size", "gap"), [(1, 100.0), (30, 20.0)])
 @pytest.mark.parametrize("solver", AT_WIDE_GAPS)
 def test_all_rods_are_held_at_wide_gaps(solver, size, gap):
     chain = Chain(size=size, gap=gap)

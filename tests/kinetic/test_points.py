@@ -42,8 +42,9 @@ def test_a_gas_released_from_one_side_fills_the_box(share):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("frame", ["label", "eulerian"])
-@pytest.mark.parametrize("start", [gathered(GAS, 0.5), wave(GAS, 0.8)])
+@pytest.mark.parametrize(
+    ("start", "frame"), [(gathered(GAS, 0.5), "label"), (wave(GAS, 0.8), "eulerian")]
+)
 @pytest.mark.filterwarnings("ignore:equal elastic rods")
 def test_the_fluid_takes_the_starts_in_both_frames(start, frame):
     """Rods are at the places of their labels, in the points' coordinate."""

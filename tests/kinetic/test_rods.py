@@ -18,7 +18,7 @@ from crazybilliards.kinetic import (
     steady_state,
 )
 from crazybilliards.kinetic.rods import fluids, places
-from crazybilliards.kinetic.rods.places import elastic_rods, exchangeable
+from crazybilliards.kinetic.rods.places import elastic_rods
 from crazybilliards.kinetic.rods.profiles import over_positions
 from crazybilliards.model import Chain, load, save
 from crazybilliards.particles import simulate
@@ -28,11 +28,7 @@ TWELVE = Chain(size=12)
 
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
 @pytest.mark.parametrize(
-    ("size", "amplitude", "gap"),
-    [
-        *[(7, 0.5, 0), (7, 30, 0), (20, 1, 0), (100, 0.5, 0), (300, 1, 0), (300, 30, 0)],
-        *[(2, 1, 0), (1, 1, 0), (20, 1, 0.3), (100, 3, 0.3), (30, 1, 2.0)],
-    ],
+    ("size", "amplitude", "gap"), [(1, 1, 0), (7, 30, 0), (100, 0.5, 0), (20, 1, 0.3), (30, 1, 2.0)]
 )
 @pytest.mark.filterwarnings("ignore::crazybilliards.kinetic.UnmeasuredWarning")
 def test_rods_of_the_force_balance_are_exact(size, amplitude, gap, spring):
@@ -45,14 +41,6 @@ def test_rods_of_the_force_balance_are_exact(size, amplitude, gap, spring):
     assert float(moved.max()) < 1e-6 * chain.thermal_length
     np.testing.assert_allclose(rods.displacement_width, exact.displacement_width, rtol=1e-6)
     assert rods.attrs["density_of"] == "rods"
-
-
-def test_the_fluid_is_far_from_them():
-    """The step back from points to rods makes all of the error of the paper's equation."""
-    chain = Chain()
-    exact = smooth(equilibrium(chain))
-    assert deviation(exact, smooth(force_balance(chain))).maximum > 0.13
-    assert deviation(exact, smooth(rod_by_rod(force_balance(chain)))).maximum < 1e-5
 
 
 @pytest.mark.compiled
@@ -104,7 +92,7 @@ def test_rods_move_and_stretch_with_the_chain(gap):
 def test_a_quench_is_that_of_simulated_chains():
     hot = TWELVE.replace(amplitude=2.5)
     times = {"duration": 4, "every": 2.0, "progress": False}
-    how = {"start": equilibrium_states(hot, 4000), "replicas": 4000, "average": "ensemble"}
+    how = {"start": equilibrium_states(hot, 3000), "replicas": 3000, "average": "ensemble"}
     run = simulate(TWELVE, observe="density", **how, **times)
     flow = hydrodynamics(TWELVE, force_balance(hot), velocity_variance="evolving", **times)
     for time in range(3):
@@ -221,17 +209,10 @@ def test_refusals():
             rod_by_rod(wrong)
 
 
-def test_order_statistics_of_two_and_three():
-    two, three = exchangeable(2), exchangeable(3)
-    np.testing.assert_allclose(two.mean(), np.array([-1, 1]) / math.sqrt(math.pi), atol=1e-9)
-    np.testing.assert_allclose(two.width() ** 2, 1 - 1 / math.pi, atol=1e-9)
-    np.testing.assert_allclose(three.mean()[0], -1.5 / math.sqrt(math.pi), atol=1e-9)
-
-
 @pytest.mark.compiled
 @pytest.mark.parametrize("gap", [0.3, 0.0])
 def test_rods_of_the_steady_state_are_those_of_a_simulation(gap):
-    chain = Chain(size=30, restitution=0.65, gap=gap)
+    chain = Chain(size=20, restitution=0.65, gap=gap)
     run = simulate(chain, duration=20_000, observe=("widths", "density"), progress=False, seed=3)
     theory = steady_state(chain)
     assert deviation(smooth(run), smooth(theory)).maximum < 0.03

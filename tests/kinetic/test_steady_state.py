@@ -26,9 +26,9 @@ def gas(size, restitution, damping, walls=1.0):
 
 
 KINDS = {
-    "linear": Chain(size=20, restitution=0.5),
+    "linear": Chain(size=16, restitution=0.5),
     "gap": Chain(size=20, restitution=0.5, gap=0.5),
-    "quadratic": Chain(size=20, restitution=0.5, spring="quadratic"),
+    "quadratic": Chain(size=16, restitution=0.5, spring="quadratic"),
     "box": Chain(size=10, restitution=0.8, box=21),
     "quadratic box": Chain(size=10, restitution=0.8, box=21, spring="quadratic"),
     "gas": gas(12, 0.5, 0.1),
@@ -50,13 +50,13 @@ def theory():
 
 
 ELASTIC = [
-    *(Chain(size=size) for size in (1, 2, 3, 4)),
+    *(Chain(size=size) for size in (1, 2, 4)),
     Chain(size=20, spring="quadratic"),
     Chain(size=20, box=42),
     Chain(size=20, box=60, stiffness=0),
     *(Chain(size=20, gap=gap) for gap in (0.3, 2.0)),  # mutation: phi = 1 with a gap
     Chain(size=20, gap=0.3, box=80),
-    *(pytest.param(Chain(size=size), marks=pytest.mark.validate) for size in (250, 1000)),
+    pytest.param(Chain(size=250), marks=pytest.mark.validate),
 ]
 
 
@@ -121,7 +121,7 @@ def test_the_pressure_of_a_gas_is_that_of_its_energy(kind, theory):
     np.testing.assert_allclose(found.wall_force * 2 * chain.walls[1], energy, rtol=1e-4)
 
 
-@pytest.mark.parametrize("kind", ["quadratic", "box", "gas"])
+@pytest.mark.parametrize("kind", ["quadratic", "box"])
 def test_the_unit_of_length_does_not_matter(kind, theory, monkeypatch):
     """It changes every stiffness, h_uu and place. Mutation: h without k_i."""
     own = mean_state.unit_length
@@ -222,7 +222,7 @@ def test_correlations_cool_a_gas(theory):
     assert float((field / theory("gas").velocity_width).mean()) > 1.05
 
 
-@pytest.mark.parametrize("changes", [{}, {"gap": 0.3}, {"box": 90}])
+@pytest.mark.parametrize("changes", [{"gap": 0.3}, {"box": 90}])
 def test_cells_of_several_rods_change_little(changes):
     chain = Chain(size=40, restitution=0.75, **changes)
     fine, coarse = (
@@ -242,7 +242,7 @@ def test_no_agreement_is_an_error_with_a_reason(monkeypatch):
 
 def test_the_way_to_small_restitutions_does_not_matter(monkeypatch):
     """Straight there, or by way of larger ones: the fixed point is the same."""
-    chain = Chain(size=12, restitution=0)
+    chain = Chain(size=8, restitution=0)
     by_way = steady_state(chain)
     monkeypatch.setattr(agreement, "_WAY", ())
     direct = steady_state(chain)

@@ -15,9 +15,10 @@ def close_packing(chain, one, other):
     return float(np.abs(difference).max()) / chain.close_packed_density
 
 
-@pytest.mark.parametrize("gap", [0.0, 0.2, 1.0])
-@pytest.mark.parametrize("size", [2, 10, 1000, 100_000])
-@pytest.mark.parametrize("amplitude", [0.1, 100])
+@pytest.mark.parametrize(
+    ("size", "gap", "amplitude"),
+    [(2, 0.2, 0.1), (10, 0.0, 100), (1000, 1.0, 100), (1000, 1.0, 0.1), (100_000, 0.0, 0.1)],
+)
 def test_a_constant_profile_gives_the_label_closure(size, gap, amplitude):
     """Newton's method in x against a quadrature over u: nothing in common but the equation."""
     chain = Chain(size=size, gap=gap, amplitude=amplitude)
@@ -40,8 +41,7 @@ PROFILES = {
 }
 
 
-@pytest.mark.parametrize("gap", [0.0, 0.5])
-@pytest.mark.parametrize("size", [10, 1000])
+@pytest.mark.parametrize(("size", "gap"), [(10, 0.5), (1000, 0.0)])
 @pytest.mark.parametrize("name", PROFILES)
 def test_steep_profiles_satisfy_the_integrated_balance(name, size, gap):
     """Check rho W^2/(1 - 2 R rho) = int_x^inf rho F(<dx>)/m, whatever W^2 does."""
@@ -63,7 +63,7 @@ def test_steep_profiles_satisfy_the_integrated_balance(name, size, gap):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize(("e", "off"), [(0.5, 0.042), (0.75, 0.033), (0.95, 0.018)])
+@pytest.mark.parametrize(("e", "off"), [(0.5, 0.042), (0.95, 0.018)])
 def test_the_measured_widths_give_nearly_the_measured_density(e, off):
     """The general force balance fed with W_v(x) of a dissipative chain.
 
