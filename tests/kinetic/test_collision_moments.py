@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad
 
-from crazybilliards.kinetic.gas.collision_moments import moments_of_collisions
+from crazybilliards.kinetic.gas.collision_moments import decay_of_two_masses, moments_of_collisions
 
 
 def average(function):
@@ -52,3 +52,17 @@ def test_collision_moments_are_the_integrals(restitution):
         assert getattr(found, name) == pytest.approx(average(function), abs=1e-7), name
     assert found.energy == pytest.approx(average(made(lambda v: v, lambda v: v)), abs=1e-7)
     assert set(moments_of_collisions(1.0)) == {0.0}
+
+
+def test_collisions_of_two_masses_damp_the_heat_flux_and_those_of_one_do_not():
+    """Against velocities drawn at random, with the momenta and energies before and after."""
+    assert decay_of_two_masses(1.0) == pytest.approx(0, abs=1e-12)
+    assert decay_of_two_masses(3.0) == pytest.approx(decay_of_two_masses(1 / 3), rel=1e-12)
+    scales = np.sqrt([[0.5], [1.5]])
+    before = np.random.default_rng(1).normal(size=(2, 250_000)) / scales
+    after = (scales**2 * before).sum(axis=0) - before
+    old, new = (third(scales * each).sum(axis=0) for each in (before, after))
+    drawn = -np.abs(before[0] - before[1]) * (new - old) * old / 12
+    error = drawn.std() / 500
+    assert decay_of_two_masses(3.0) == pytest.approx(drawn.mean(), abs=5 * error)
+    assert error < 0.06

@@ -187,30 +187,6 @@ def test_heat_relaxes_with_the_mean_of_the_inverse_masses():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize(
-    ("frame", "kind", "scaled", "tolerance"),
-    [("eulerian", "evolving", 5.0, 0.01), ("label", None, 50.0, 0.002)],
-)
-@pytest.mark.filterwarnings("ignore:equal elastic rods")
-def test_a_gas_released_from_one_half_diffuses_as_its_points(frame, kind, scaled, tolerance):
-    """Shares beyond the middle at t W/l = .25, .5, .75, 1 (exact for equal rods)."""
-    exact = {5.0: [0.1653, 0.2828, 0.3644, 0.4167], 50.0: [0.0765, 0.1106, 0.1363, 0.1580]}
-    room, size = 100.0, 50
-    chain = gas(scaled / room, room, size=size)
-    N = size * np.linspace(0, 1, 2001)
-    x = -room / 2 + room / 2 * N / size + 2 * (N - size / 2)
-    x, N = np.append(x, [x[-1] + 1e-6, chain.box / 2]), np.append(N, [size, size])
-    density = np.where(np.arange(x.size) < 2001, size / (x[2000] - x[0]), 0.0)
-    start = xr.Dataset({"density": ("x", density), "label": ("x", N)}, {"x": x})
-    flow = hydrodynamics(
-        chain, start, room, every=room / 4, velocity_variance=kind, frame=frame, progress=False
-    )
-    y = np.maximum.accumulate(flow.x.values - 2 * (flow.label.values - size / 2), axis=1)
-    left = [np.interp(0, here, there) for here, there in zip(y, flow.label.values, strict=True)]
-    np.testing.assert_allclose(1 - np.array(left)[1:] / size, exact[scaled], atol=tolerance)
-
-
-@pytest.mark.compiled
 def test_a_gas_at_rest_stays_and_comes_back_to_rest_on_springs():
     chain = in_a_box(10.0, gap=0.3)
     hot = force_balance(chain.replace(amplitude=8))

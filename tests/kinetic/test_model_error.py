@@ -10,14 +10,19 @@ from crazybilliards.comparison import deviation, smooth
 from crazybilliards.kinetic import (
     UnmeasuredWarning,
     accuracy,
+    compressed,
+    displaced,
     equilibrium,
     force_balance,
+    hydrodynamics,
     steady_state,
 )
 from crazybilliards.model import Chain
+from studies.relaxation_error import Place
 from studies.stationary_errors import driven, gas, on_springs
 
 ROOT = Path(__file__).parents[2]
+EVOLVING = {"velocity_variance": "evolving", "progress": False}
 QUANTITIES = accuracy.Accuracy._fields
 
 
@@ -136,3 +141,65 @@ def test_chains_drawn_at_random_keep_to_the_stated_errors():
             assert not error > limits[name] + spread
     assert known > 240
     assert beyond <= 3
+
+
+def chain_and_start(start=compressed, by=0.9, **changes):
+    chain = Chain(**({"size": 50, "restitution": 0.95} | changes))
+    return chain, start(chain.replace(restitution=1.0), by)
+
+
+def stated_in_time(*release, **changes):
+    chain, _ = chain_and_start(**changes)
+    return accuracy.expected_in_time(chain, accuracy.Release(*release))
+
+
+def test_the_gas_states_the_largest_error_of_its_range():
+    for row in rows("kinetic/measured/relaxation.csv"):
+        least_gap, gap, least, most = (float(value) for value in list(row.values())[3:7])
+        place = Place(50, 1 - (least + most) / 100, 1.0, 0.9, gap=(least_gap + gap) / 2)
+        chain = place._replace(spring={"2": "linear", "3": "quadratic"}[row["n"]]).chain()
+        error = float(row["error"]) + 2 * float(row["standard error"])
+        found = accuracy.expected_in_time(chain, accuracy.Release(0.9, 0.0, 1.0))
+        assert found == pytest.approx(error), row
+    assert stated_in_time(0.3, 0.0, 1.0, restitution=1.0) == 0
+    for changes in (
+        *({"gap": 1.0}, {"size": 10}, {"size": 300}, {"damping": 4.0}),
+        *({"damping": 0.5}, {"restitution": 0.7}, {"restitution": 1.03}),
+    ):
+        assert np.isnan(stated_in_time(0.9, 0.0, 1.0, **changes)), changes
+
+
+@pytest.mark.compiled
+def test_the_error_is_that_of_the_chain_and_the_start():
+    def at_rest(chain, _):
+        return force_balance(chain)
+
+    def hot(chain, _):
+        return force_balance(chain.replace(amplitude=2.0))
+
+    def found(**changes):
+        chain, start = chain_and_start(**changes)
+        return hydrodynamics(chain, start, 0.1, **EVOLVING).attrs["kinetic_energy_model_error"]
+
+    assert found() == pytest.approx(stated_in_time(0.9, 0.0, 1.0))
+    assert found(start=displaced, by=1.0) == found()
+    for changes in (
+        {"by": 1.5},
+        {"start": displaced, "by": 3.0},
+        {"size": 20, "box": 60.0, "amplitude": 10.0, "start": at_rest},
+        {"start": hot},
+    ):
+        with pytest.warns(UnmeasuredWarning, match="error of the kinetic energy was not measured"):
+            assert np.isnan(found(**changes))
+
+
+def test_chains_released_later_keep_to_the_stated_error():
+    released = rows("docs/tables/relaxation_held_out.csv")
+    assert len(released) == 14
+    for row in released:
+        numbers = [float(value) for value in list(row.values())[1:6]]
+        place = Place(int(row["L"]), *numbers, spring=row["spring"])
+        release = accuracy.Release(place.factor, place.shift, 1.0)
+        largest, error = map(float, row["largest error, %"].split(" ± "))
+        limit = accuracy.expected_in_time(place.chain(), release)
+        assert abs(largest) <= 100 * limit + 2 * error, row

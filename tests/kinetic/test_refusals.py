@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from crazybilliards import kinetic
+from crazybilliards import kinetic, smooth
 from crazybilliards.model import Chain
 
 STATIONARY = """
@@ -30,21 +30,18 @@ FORCE_BALANCE = """
 force_balance(Chain(restitution=0.5)) | restitution must be 1, got 0.5; give velocity_variance
 force_balance(Chain(amplitude=0)) | no steady state
 force_balance(Chain(), velocity_variance=-1) | velocity_variance must be
-force_balance(Chain(), 3) | displacement takes
 force_balance(Chain(), ([0, 1], [1])) | equally long
 force_balance(Chain(), ([1, 0], [1, 2])) | ascending
 force_balance(Chain(), ([0, 1], [1, np.nan])) | finite
 force_balance(Chain(), lambda x: -x) | does not hold the rods together
 force_balance(Chain(), lambda x: 0 * x) | displacement
 force_balance(Chain(), lambda x: np.arctanh(x)) | not finite at x =
-force_balance(Chain(size=3), equilibrium(Chain(size=4))) | 4 particles
 force_balance(Chain(), lambda x: 0.3 * x, lambda x: 1.0) | cannot be given together
 force_balance(five, lambda x: "one") | displacement: the callable must return a number for each x
 force_balance(five, None, lambda x: "one") | velocity_variance: the callable must return a number
 force_balance(five, None, lambda x: -1.0) | finite and positive
 force_balance(five, None, ([0, 1], [1, 2, 3])) | equally long
 force_balance(five, None, "abc") | velocity_variance takes
-force_balance(five, None, force_balance(Chain(size=9))) | 9 particles
 force_balance(five.replace(spring="quadratic"), None, lambda x: 1.0) | linear springs
 force_balance(boxed.replace(wall_restitution=0.5)) | elastic walls only
 force_balance(boxed.replace(stiffness=0), lambda x: x) | without springs it has no effect
@@ -74,9 +71,7 @@ flow(moved.drop_vars("label").assign(density=0.5 * moved.density)) | add up to t
 flow(moved.assign(density=-moved.density)) | not negative
 flow(moved.assign(flow_velocity=moved.flow_velocity * np.nan)) | flow_velocity
 flow(moved.assign(velocity_variance=-moved.velocity_variance)) | positive
-flow(moved.drop_vars("density")) | no 'density'
 flow(moved.drop_vars("x")) | no coordinate 'x'
-rod_by_rod(force_balance(five).drop_vars("x")) | no coordinate 'x'
 flow(moved.astype(str)) | must be numbers
 flow(displaced(many, 1.0), many, 1.0, every=1e-6) | would take ... GiB of memory
 flow(displaced(wide, 0.5), wide, frame="eulerian", cells=100) | wide, 0.5 at most ...give cells=613
@@ -101,6 +96,23 @@ breathing_cloud(five, 1.0, shift=np.inf) | shift must be
 breathing_cloud(five, 1.0, start_velocity_variance=-1.0) | start_velocity_variance must be
 """
 
+RODS = """
+rod_by_rod(rest.drop_vars("x")) | no coordinate 'x'
+rod_by_rod(smooth(rest)) | smoothed already
+rod_by_rod(rest.drop_vars("label")) | no 'label'
+rod_by_rod(rest.drop_vars("density")) | no 'density'
+rod_by_rod(rest.isel(x=slice(0, rest.sizes["x"] // 2))) | needs the whole grid
+rod_by_rod(rest.isel(x=[*range(0, 100, 2), *range(100, rest.sizes["x"])])) | must be even
+rod_by_rod(rest.isel(x=slice(None, None, -1))) | needs the whole grid
+rod_by_rod(rest.isel(particle=slice(3))) | 3 particles, the chain 5
+rod_by_rod(rest.expand_dims("case")) | over x or
+rod_by_rod(rest.assign(label=rest.label * np.nan)) | needs the whole grid
+rod_by_rod(rest.assign_attrs(provenance=at_rest(twenty).attrs["provenance"])) | rods
+rod_by_rod(rest.assign_attrs(source="simulation")) | takes a theory
+rod_by_rod(rest.drop_attrs()) | names no chain
+rod_by_rod(rest.density) | a DataArray
+"""
+
 
 @pytest.fixture(scope="module")
 def names():
@@ -117,6 +129,8 @@ def names():
         "Chain": Chain,
         "np": np,
         "at_rest": kinetic.force_balance,
+        "rest": kinetic.force_balance(five),
+        "smooth": smooth,
         "hot": {"velocity_variance": "evolving"},
         "five": five,
         "boxed": Chain(size=5, amplitude=5, box=30),
@@ -139,7 +153,7 @@ def names():
             *line.split(" | "),
             marks=pytest.mark.compiled if re.search("twenty|lossy", line) else (),
         )
-        for table in (STATIONARY, FORCE_BALANCE, IN_TIME)
+        for table in (STATIONARY, FORCE_BALANCE, IN_TIME, RODS)
         for line in table.strip().splitlines()
     ],
 )

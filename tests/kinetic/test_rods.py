@@ -1,6 +1,4 @@
-"""From points to rods: exact at restitution 1, conserved, and what is refused."""
-
-import math
+"""From points to rods: exact at restitution 1, and conserved."""
 
 import numpy as np
 import pytest
@@ -11,7 +9,6 @@ from crazybilliards.kinetic import (
     compressed,
     displaced,
     equilibrium,
-    equilibrium_states,
     force_balance,
     hydrodynamics,
     rod_by_rod,
@@ -87,55 +84,6 @@ def test_rods_move_and_stretch_with_the_chain(gap):
     np.testing.assert_allclose(stretched.label, label, atol=1e-5)
 
 
-@pytest.mark.validate
-@pytest.mark.compiled
-def test_a_quench_is_that_of_simulated_chains():
-    hot = TWELVE.replace(amplitude=2.5)
-    times = {"duration": 4, "every": 2.0, "progress": False}
-    how = {"start": equilibrium_states(hot, 3000), "replicas": 3000, "average": "ensemble"}
-    run = simulate(TWELVE, observe="density", **how, **times)
-    flow = hydrodynamics(TWELVE, force_balance(hot), velocity_variance="evolving", **times)
-    for time in range(3):
-        simulated, fluid, rods = (
-            smooth(each).isel(time=time) for each in (run, flow, rod_by_rod(flow))
-        )
-        assert deviation(simulated, rods).maximum_in_errors < 5
-        assert deviation(simulated, fluid).maximum_in_errors > 20
-
-
-def _theories():
-    chain = TWELVE.replace(restitution=0.9)
-    start = compressed(chain, 0.7)
-    flow = {"every": 1.0, "progress": False}
-    yield rod_by_rod(force_balance(TWELVE))
-    yield rod_by_rod(hydrodynamics(TWELVE, start, 2.0, **flow))
-    yield rod_by_rod(hydrodynamics(TWELVE, start, 2.0, frame="eulerian", **flow))
-    yield rod_by_rod(hydrodynamics(chain, start, 2.0, velocity_variance="evolving", **flow))
-    for changes in ({}, {"gap": 0.3}, {"box": 26}, {"spring": "quadratic"}):
-        yield steady_state(chain.replace(**changes))
-    yield rod_by_rod(force_balance(TWELVE, lambda x: 0.3 * x))
-    run = (TWELVE.anchors, 0.1 + 0.01 * np.abs(TWELVE.anchors))
-    yield rod_by_rod(force_balance(chain.replace(gap=0.2), velocity_variance=run))
-
-
-@pytest.mark.compiled
-@pytest.mark.filterwarnings("ignore::crazybilliards.kinetic.UnmeasuredWarning")
-def test_no_rod_is_lost():
-    for theory in _theories():
-        spacing = float(theory.x[1] - theory.x[0])
-        np.testing.assert_allclose(theory.density.sum("x") * spacing, 12, rtol=1e-6)
-        label = theory.label.values
-        np.testing.assert_allclose(label[..., -1] - label[..., 0], 12, rtol=1e-12)
-        assert (np.diff(label) >= 0).all()
-        assert (theory.density.values >= 0).all()
-        assert theory.attrs["density_of"] == "rods"
-
-
-def test_what_has_the_density_of_its_rods_is_returned_as_it_is():
-    for found in (equilibrium(TWELVE), steady_state(TWELVE), rod_by_rod(force_balance(TWELVE))):
-        assert rod_by_rod(found) is found
-
-
 def test_it_takes_one_time_or_all_and_files(tmp_path):
     flow = hydrodynamics(TWELVE, displaced(TWELVE, 1.0), 2, every=1.0, progress=False)
     save(flow, tmp_path / "flow.nc")
@@ -147,6 +95,8 @@ def test_it_takes_one_time_or_all_and_files(tmp_path):
     np.testing.assert_allclose(one.mean_position, TWELVE.anchors + one.mean_displacement)
     save(rods, tmp_path / "rods.nc")
     assert flow.attrs["density_of"] == "fluid"
+    for found in (equilibrium(TWELVE), steady_state(TWELVE), rods):
+        assert rod_by_rod(found) is found
 
 
 @pytest.mark.parametrize("gap", [0.0, 0.3])
@@ -165,14 +115,6 @@ def test_a_start_with_the_density_of_rods_is_that_of_their_fluid(gap):
         assert float(moved.max()) < most * chain.thermal_length
 
 
-def test_its_errors_are_stated():
-    assert force_balance(TWELVE).attrs["density_model_error"] > 0.1
-    assert rod_by_rod(force_balance(TWELVE)).attrs["density_model_error"] == 0
-    with pytest.warns(UserWarning, match="not measured"):
-        other = force_balance(TWELVE, velocity_variance=0.1)
-    assert math.isnan(rod_by_rod(other).attrs["density_model_error"])
-
-
 def test_more_rods_than_anybody_resolves_stay_a_fluid(monkeypatch):
     monkeypatch.setattr(places, "MOST_RODS", 11)
     balance = force_balance(TWELVE)
@@ -183,30 +125,6 @@ def test_more_rods_than_anybody_resolves_stay_a_fluid(monkeypatch):
         assert found.attrs["density_of"] == "fluid"
         spacing = float(found.x[1] - found.x[0])
         assert float(found.density.sum() * spacing) == pytest.approx(12, rel=1e-3)
-
-
-def _wrong():
-    balance = force_balance(TWELVE)
-    yield smooth(balance), "smoothed already"
-    yield balance.drop_vars("label"), "no 'label'"
-    yield balance.drop_vars("density"), "no 'density'"
-    yield balance.isel(x=slice(0, balance.sizes["x"] // 2)), "needs the whole grid"
-    yield balance.isel(x=[*range(0, 100, 2), *range(100, balance.sizes["x"])]), "must be even"
-    yield balance.isel(x=slice(None, None, -1)), "needs the whole grid"
-    yield balance.isel(particle=slice(3)), "3 particles, the chain 12"
-    yield balance.expand_dims("case"), "over x or"
-    yield balance.assign(label=balance.label * np.nan), "needs the whole grid"
-    yield balance.assign_attrs(provenance=force_balance(Chain(size=5)).attrs["provenance"]), "rods"
-    run = simulate(Chain(size=3), duration=20, observe="density", progress=False)
-    yield run, "takes a theory"
-    yield balance.drop_attrs(), "names no chain"
-    yield balance.density, "a DataArray"
-
-
-def test_refusals():
-    for wrong, message in _wrong():
-        with pytest.raises(ValueError, match=message):
-            rod_by_rod(wrong)
 
 
 @pytest.mark.compiled
