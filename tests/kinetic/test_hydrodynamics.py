@@ -1,11 +1,8 @@
 """The hydrodynamics: against exact solutions, the stationary theory, and frame against frame."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 from pde import MemoryStorage
-from scipy.optimize import elementwise
 
 from crazybilliards.kinetic import compressed, displaced, equilibrium, force_balance, hydrodynamics
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
@@ -283,16 +280,6 @@ def test_the_first_steps_resolve_what_the_springs_draw(monkeypatch):
     assert len(calls) == 1
     exact = hydrodynamics(chain, displaced(chain, 25.0), 2.0, every=1.0, **QUIET)
     np.testing.assert_allclose(flow.centre, exact.centre, atol=0.02 * 25)
-
-
-def test_a_label_that_is_not_found_is_an_error(monkeypatch):
-    """The middle of a cell is the position only where the cell is empty."""
-    chain = Chain(size=20)
-    start = displaced(chain, 1.0)
-    hasty = partial(elementwise.find_root, maxiter=1)
-    monkeypatch.setattr(elementwise, "find_root", hasty)
-    with pytest.raises(ValueError, match="labels could not be inverted"):
-        hydrodynamics(chain, start, 1, **QUIET)
 
 
 def test_a_plain_density_profile_is_a_start():

@@ -54,7 +54,7 @@ ELASTIC = [
     Chain(size=20, box=60, stiffness=0),
     *(Chain(size=20, gap=gap) for gap in (0.3, 2.0)),  # mutation: phi = 1 with a gap
     Chain(size=20, gap=0.3, box=80),
-    pytest.param(Chain(size=250), marks=pytest.mark.validate),
+    pytest.param(Chain(size=150), marks=pytest.mark.validate),
 ]
 
 
