@@ -20,6 +20,7 @@ from crazybilliards.particles.stepping import advance, record
 # Number of particle steps between two checks for Ctrl-C (about 20 ms), and the most positions in
 # the snapshots between them, which then stay in a processor's cache.
 _CHUNK, _ROOM = 2**20, 2**17
+_LINE = 8  # numbers in a line of the cache, 64 bytes
 
 NEVER = 2**62
 
@@ -53,7 +54,7 @@ class Replica:
     def _start(self) -> None:
         """Set the chain to the start of the present copy."""
         number = self.members[self.copy]
-        self.y, self.v = (np.array(values) for values in self.run.starts[number])
+        self.y, self.v = (_aligned(values) for values in self.run.starts[number])
         self.noise = make_noise(self.run.streams[number])
         self.steps = self.snapshots = 0  # that it has taken
         self.over = False  # it diverged
@@ -196,3 +197,12 @@ def restore(owner: Any, name: str, value: NDArray[Any]) -> None:
         current[...] = value  # in place: kernels write into the same array
     else:
         setattr(owner, name, type(current)(value))
+
+
+def _aligned(values: Array) -> Array:
+    """Return a copy that begins with a line of the cache: others slow short chains by up to a third."""
+    room = np.empty(values.size + _LINE - 1)
+    first = -room.ctypes.data // room.itemsize % _LINE
+    copy = room[first : first + values.size]
+    copy[:] = values
+    return copy
