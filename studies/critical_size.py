@@ -74,8 +74,9 @@ def tables(results: Results) -> dict[str, Table]:
     rows = [["e", "gamma", "theory", "simulation"]]
     for (restitution, damping), found in simulated(results).items():
         chain = Chain(restitution=restitution, damping=damping)
-        theory, simulation = (f"{size:.1f} ± {e:.1f}" for size, e in (critical_size(chain), found))
-        rows.append([f"{restitution:g}", f"{damping:g}", theory, simulation])
+        theory, (size, error) = critical_size(chain).value, found
+        row = f"{restitution:g}", f"{damping:g}", f"{theory:.1f}", f"{size:.1f} ± {error:.1f}"
+        rows.append(list(row))
     return {"critical_size": rows}
 
 
