@@ -1,7 +1,7 @@
 """Cells of neighbouring rods, and what lies between them.
 
 Up to ``MOST`` rods a cell is one rod. Longer chains have cells of several rods in the middle, where
-correlations reach far, and of about one at the ends: labels at s - sin(2 pi s)/(4 pi), s even.
+correlations reach far, and of one at the ends.
 """
 
 from __future__ import annotations
@@ -18,49 +18,73 @@ _SCORES, _POINTS = 5.5, 320
 
 
 class Cells(NamedTuple):
-    """M cells of a chain, all lengths counted in rods."""
+    """M cells of a chain, and its K contacts: M - 1 of cells, and two at walls if there are any.
+
+    All lengths are counted in rods.
+    """
 
     rods: Array  # number of rods in each, shape (M,)
     centres: Array  # label of each, from 0 to L, shape (M,)
     contacts: Array  # label of the contact between two, shape (M - 1,)
     distances: Array  # from centre to centre, shape (M - 1,)
     to_wall: float  # from the outermost centres to a wall
+    walled: bool
 
-    def all_distances(self, walled: bool) -> Array:
-        """Return the distances across all contacts, those of walls included."""
-        return np.pad(self.distances, 1, constant_values=self.to_wall) if walled else self.distances
+    @property
+    def all_distances(self) -> Array:
+        """Distances across all contacts, (K,)."""
+        if not self.walled:
+            return self.distances
+        return np.pad(self.distances, 1, constant_values=self.to_wall)
 
-    def all_labels(self, walled: bool) -> Array:
-        """Return the labels of all contacts, 0 and L being walls."""
-        ends = [0.0], [self.rods.sum()]
-        return np.concatenate([ends[0], self.contacts, ends[1]]) if walled else self.contacts
+    @property
+    def all_labels(self) -> Array:
+        """Labels of all contacts, 0 and L being walls, (K,)."""
+        if not self.walled:
+            return self.contacts
+        return np.pad(self.contacts, 1, constant_values=(0.0, self.rods.sum()))
+
+    @property
+    def inner(self) -> slice:
+        """Which of all contacts lie between two cells."""
+        return slice(1, -1) if self.walled else slice(None)
+
+    def between(self, values: Array) -> Array:
+        """Return the means at all contacts of what cells have; at a wall that of its cell."""
+        return means(np.pad(values, 1, mode="edge")) if self.walled else means(values)
+
+    def sides(self, at_contacts: Array) -> tuple[Array, Array]:
+        """Return what all contacts have left and right of each cell, 0 beyond open ends."""
+        values = at_contacts if self.walled else np.pad(at_contacts, 1)
+        return values[:-1], values[1:]
 
 
-def make_cells(size: int, most: int = MOST, *, whole: bool = False) -> Cells:
-    """Divide ``size`` rods into at most ``most`` cells, symmetric about the centre.
-
-    ``whole``: none is shorter than a rod.
-    """
+def make_cells(size: int, most: int = MOST, *, walled: bool = False) -> Cells:
+    """Divide ``size`` rods into at most ``most`` cells, none shorter than a rod."""
     ends = np.arange(size + 1.0)
     if size > most:
         s = np.linspace(0, 1, most + 1)
-        uneven = 1 - most / size if whole else 0.5
-        ends = size * (s - uneven * np.sin(2 * np.pi * s) / (2 * np.pi))
-        ends = (ends + size - ends[::-1]) / 2  # symmetric but for rounding
-    return _between(ends, 0.5)
+        ends = size * (s - (1 - most / size) * np.sin(2 * np.pi * s) / (2 * np.pi))
+    return _between(ends, 0.5, walled)
 
 
-def cells_of_points(size: int) -> Cells:
+def cells_of_points(size: int, *, walled: bool = False) -> Cells:
     """Return cells much smaller than a rod at both ends: evenly spaced normal scores of labels."""
     ends = size * ndtr(np.linspace(-_SCORES, _SCORES, _POINTS + 1))
     ends[0], ends[-1] = 0, size
-    return _between((ends + size - ends[::-1]) / 2, 0.0)
+    return _between(ends, 0.0, walled)
 
 
-def _between(ends: Array, beyond: float) -> Cells:
+def _between(ends: Array, beyond: float, walled: bool) -> Cells:
     """Return cells between ends. ``beyond``: rods from the outermost ends to a wall."""
-    rods, centres = np.diff(ends), (ends[1:] + ends[:-1]) / 2
-    return Cells(rods, centres, ends[1:-1], np.diff(centres), rods[0] / 2 + beyond)
+    ends = (ends + ends[-1] - ends[::-1]) / 2  # symmetric but for rounding
+    rods, centres = np.diff(ends), means(ends)
+    return Cells(rods, centres, ends[1:-1], np.diff(centres), rods[0] / 2 + beyond, walled)
+
+
+def means(values: Array) -> Array:
+    """Return the means of neighbouring values."""
+    return (values[1:] + values[:-1]) / 2
 
 
 def at_distance(
@@ -110,9 +134,3 @@ def _side_diagonal(covariance: Array, places: Array, apart: int) -> tuple[Array,
     """Return middle, distance and covariance of all pairs that many cells apart."""
     first, second = places[:-apart], places[apart:]
     return (first + second) / 2, second - first, np.diag(covariance, apart)
-
-
-def of_cells(at_contacts: Array) -> Array:
-    """Continue a field from the M - 1 contacts to the M cells."""
-    inner = (at_contacts[1:] + at_contacts[:-1]) / 2
-    return np.concatenate([at_contacts[:1], inner, at_contacts[-1:]])

@@ -43,91 +43,78 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crazybilliards.kinetic.gas.cells import Cells, at_distance
+from crazybilliards.kinetic.gas.cells import at_distance
 from crazybilliards.kinetic.gas.contact_speeds import contact_speed
 from crazybilliards.kinetic.gas.fluctuations import Background, PairCovariance
 from crazybilliards.model.arrays import Array
 
 _NEIGHBOUR = 1.0  # rod
 _BEYOND = 2  # cells between two rods that have not hit one another
-_LEAST = 0.02  # bound of Theta/T, F and 1 - K h_uu on the way; at the end they must be far from it
+_LEAST = 0.02  # bound of Theta/T, b and 1 - K h_uu on the way; at the end they must be far from it
 
 
 class Closure(NamedTuple):
-    """The unknowns that mean state and fluctuations must agree on, at the M - 1 contacts."""
+    """The unknowns that mean state and fluctuations must agree on, at the M - 1 contacts.
+
+    All are 0 in the mean field.
+    """
 
     shared: Array  # h_c/W_v^2
     collective: Array  # K h_uu
-    log_clustering: Array  # ln F
+    log_strength: Array  # ln b, b = 2 K F/(1 + e), the strength of collisions of rods with Theta
 
-    @property
-    def is_possible(self) -> bool:
-        """True if no unknown lies on one of the bounds to which ``implied`` keeps an iteration."""
-        bounded = 1 - self.shared, 1 - self.collective, np.exp(self.log_clustering)
-        return min(float(values.min()) for values in bounded) > 2 * _LEAST
-
-    def packed(self) -> Array:
-        """Return them as one vector."""
-        return np.concatenate(self)
+    @classmethod
+    def of_mean_field(cls, contacts: Array) -> Closure:
+        """Return that of independent rods."""
+        return cls(*np.zeros((3, contacts.size)))
 
     @classmethod
     def unpacked(cls, vector: Array) -> Closure:
         """Return the unknowns of a vector, within their bounds."""
-        shared, collective, clustering = np.split(vector, 3)
+        shared, collective, strength = np.split(vector, 3)
         most = 1 - _LEAST
-        return cls(np.minimum(shared, most), np.minimum(collective, most), clustering)
+        return cls(np.minimum(shared, most), np.minimum(collective, most), strength)
+
+    @property
+    def is_possible(self) -> bool:
+        """True if no unknown lies on one of the bounds to which ``implied`` keeps an iteration."""
+        bounded = 1 - self.shared, 1 - self.collective, np.exp(self.log_strength)
+        return min(float(values.min()) for values in bounded) > 2 * _LEAST
 
     def at(self, contacts: Array, labels: Array) -> Closure:
-        """Return those at other labels."""
+        """Return those at other labels; a rod alone has none."""
+        if contacts.size == 0:
+            return Closure.of_mean_field(labels)
         return Closure(*(np.interp(labels, contacts, values) for values in self))
 
     def relative_temperature(self, T: Array) -> Array:
         """Return Theta of contacts where the mean state has T."""
         return (T + self.collective) * (1 - self.shared)
 
-    def strength(self, T: Array, restitution: float) -> Array:
+    def strength(self, T: Array) -> Array:
         """Return a at the contacts, for rods."""
-        slower = np.sqrt(self.relative_temperature(T) / T)
-        return pair_strength(restitution, self) * slower
+        return np.exp(self.log_strength) * np.sqrt(self.relative_temperature(T) / T)
 
 
-class Independent:
-    """The closure of the mean field: colliding rods are independent."""
-
-    collective = 0.0
-
-    def at(self, contacts: Array, labels: Array) -> Independent:
-        """Return the same at other labels."""
-        return self
-
-    def strength(self, T: Array, restitution: float) -> Array:
-        """Return a = 1 at the contacts."""
-        return np.ones(T.size)
-
-
-def pair_strength(restitution: float, closure: Closure) -> Array:
-    """Return b = 2 K F/(1 + e), the strength of collisions of rods with Theta and P."""
-    return 2 / (1 + restitution) * contact_speed(restitution) * np.exp(closure.log_clustering)
-
-
-def implied(cells: Cells, around: Background, inner: slice, pairs: PairCovariance) -> Closure:
-    """Return the unknowns that follow from the fluctuations. ``inner``: contacts of two cells."""
+def implied(state: Background, pairs: PairCovariance) -> Closure:
+    """Return the unknowns that follow from the fluctuations about a state."""
+    cells, e = state.cells, state.medium.restitution
     leaving, approaching = (
         at_distance(pairs.velocity, cells.centres, cells.contacts, _NEIGHBOUR, nearest)
         for nearest in (1, _BEYOND)
     )
-    variance = (around.temperature + around.shared)[inner]
-    stiffness = np.interp(cells.contacts, cells.centres, around.stiffness)
-    collective = stiffness * at_distance(pairs.displacement, cells.centres, cells.contacts, 0.0)
+    variance = (state.temperature + state.shared)[cells.inner]
+    stiffness = np.interp(cells.contacts, cells.centres, state.stiffness)
+    displaced = at_distance(pairs.displacement, cells.centres, cells.contacts, 0.0)
     mixed, temperature = (
         at_distance(field, cells.contacts, cells.contacts, _NEIGHBOUR)
         for field in (pairs.gap_temperature, pairs.temperature)
     )
-    clustering = 1 + 0.375 * temperature - 0.5 * mixed
+    clustering = np.maximum(_even(1 + 0.375 * temperature - 0.5 * mixed), _LEAST)
     return Closure(
         np.minimum(_even((leaving + approaching) / 2 / variance), 1 - _LEAST),
-        np.minimum(_even(collective), 1 - _LEAST),
-        np.log(np.maximum(_even(clustering), _LEAST)),
+        np.minimum(_even(stiffness * displaced), 1 - _LEAST),
+        np.log(2 / (1 + e) * contact_speed(e) * clustering),
     )
 
 

@@ -33,23 +33,9 @@ import math
 
 from scipy.interpolate import PchipInterpolator
 
-# e: K^2, to 0.001.
-SQUARES = {
-    0.0: 0.482,
-    0.1: 0.580,
-    0.2: 0.678,
-    0.3: 0.771,
-    0.4: 0.853,
-    0.5: 0.920,
-    0.6: 0.970,
-    0.7: 1.002,
-    0.75: 1.011,
-    0.8: 1.016,
-    0.85: 1.017,
-    0.9: 1.015,
-    0.95: 1.010,
-    1.0: 1.0,
-}
+_RESTITUTIONS = 0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1
+_THOUSANDTHS = 482, 580, 678, 771, 853, 920, 970, 1002, 1011, 1016, 1017, 1015, 1010, 1000
+SQUARES = {e: K / 1000 for e, K in zip(_RESTITUTIONS, _THOUSANDTHS, strict=True)}  # K^2
 _SQUARE = PchipInterpolator(list(SQUARES), list(SQUARES.values()))
 
 

@@ -18,28 +18,14 @@ from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.exact.recursion import recursion_of, weights
 from crazybilliards.kinetic.gas.cells import Cells
-from crazybilliards.kinetic.gas.mean_state import Medium, between
+from crazybilliards.kinetic.gas.mean_state import Medium
 from crazybilliards.kinetic.rods.places import at_temperature
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 
-# x: variance of a rod in the elastic lattice of wells over T/k, to 1e-4.
-VARIANCES = {
-    0.0: 0.0,
-    0.1: 0.0493,
-    0.2: 0.0972,
-    0.3: 0.1438,
-    0.5: 0.2328,
-    0.7: 0.3163,
-    1.0: 0.4315,
-    1.5: 0.5971,
-    2.0: 0.7305,
-    2.5: 0.8329,
-    3.0: 0.9060,
-    4.0: 0.9792,
-    5.0: 0.9973,
-    8.0: 1.0,
-}
+_SPACINGS = 0, 0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 2.5, 3, 4, 5, 8  # x
+_SHARES = 0, 493, 972, 1438, 2328, 3163, 4315, 5971, 7305, 8329, 9060, 9792, 9973, 10_000
+VARIANCES = {x: v / 10_000 for x, v in zip(_SPACINGS, _SHARES, strict=True)}  # v, to 1e-4
 _VARIANCE = PchipInterpolator(list(VARIANCES), list(VARIANCES.values()))
 _MOST = 1000  # rods of a gap whose exact state is computed; longer chains have the same ends
 _LEAST = 1e-12  # of phi
@@ -47,17 +33,15 @@ _LEAST = 1e-12  # of phi
 
 def contact_share(chain: Chain, medium: Medium, cells: Cells, temperature: Array) -> Array:
     """Return phi at all contacts. ``temperature``: W_v^2 of the cells."""
-    if chain.exchangeable:
-        return np.ones(cells.all_labels(medium.walled).size)
     edge = float(temperature[[0, -1]].mean())
     places, share = _of_rods(at_temperature(chain, edge * chain.temperature))
-    labels = cells.all_labels(medium.walled)
+    labels = cells.all_labels
     if len(places) < chain.size + 1:  # counted from the nearer end
         labels = np.minimum(np.minimum(labels, chain.size - labels), places[-1] / 2)
     phi = np.interp(labels, places, share)
     if chain.spring == "linear":
         x = medium.lattice * np.sqrt(medium.stiffness)
-        local = between(temperature, medium.walled)
+        local = cells.between(temperature)
         phi = phi * _lattice_share(x / np.sqrt(local)) / _lattice_share(x / np.sqrt(edge))
     return phi
 

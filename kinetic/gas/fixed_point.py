@@ -1,71 +1,68 @@
-"""Anderson's acceleration of a fixed-point iteration, with bounded steps.
-
-scipy.optimize.anderson takes any step that its line search likes, and an evaluation here is a
-state of the gas that cannot be found far from where one was found before.
-"""
+"""Fixed points by Anderson's acceleration."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
+from scipy import optimize
 
+from crazybilliards.kinetic.gas.mean_state import NoSteadyStateError
 from crazybilliards.model.arrays import Array
 
 _KEPT = 5
 _MIXED = 0.5  # share of the residual in a step
-_LONGEST = 0.4  # change of any unknown in a step
-_MOST_HALVINGS = 6
-_LEAST_DIRECTION = 1e-3  # singular values below this share of the largest say nothing
+_MOST_ITERATIONS = 60
+
+State = TypeVar("State")
 
 
-class FixedPoint(NamedTuple):
-    """Where x = map(x), the largest |map(x) - x|, and the number of evaluations."""
+class FixedPoint(NamedTuple, Generic[State]):
+    """Where x = image(x), what was found there, the largest |image(x) - x|, and evaluations."""
 
     x: Array
+    state: State
     residual: float
     evaluations: int
 
 
-class NoFixedPointError(ValueError):
-    """The iteration did not come to an end."""
-
-
 def find_fixed_point(
-    image: Callable[[Array], Array], start: Array, tolerance: float, most: int
-) -> FixedPoint:
-    """Find x = image(x), to ``tolerance`` in its largest component.
+    image: Callable[[Array], tuple[Array, State]], start: Array, tolerance: float
+) -> FixedPoint[State]:
+    """Find x = image(x), to ``tolerance`` in its largest component; an image comes with a state."""
+    found: list[FixedPoint[State]] = []
 
-    Where ``image`` raises a ValueError, half the step is tried, as far as six times.
-    """
-    points: list[Array] = []
-    residuals: list[Array] = []
-    x, size, halvings = start, np.nan, 0
-    for evaluation in range(1, most + 1):
-        try:
-            residual = image(x) - x
-        except ValueError:
-            halvings += 1
-            if not points or halvings > _MOST_HALVINGS:
-                raise
-            x = (x + points[-1]) / 2
-            continue
-        size, halvings = float(np.abs(residual).max()), 0
-        if size < tolerance:
-            return FixedPoint(x, size, evaluation)
-        points, residuals = [*points, x][-_KEPT:], [*residuals, residual][-_KEPT:]
-        x = x + _step(points, residuals)
-    raise NoFixedPointError(
-        f"no agreement after {most} iterations: what is looked for still changes by {size:.2g}"
-    )
+    def off(x: Array) -> Array:
+        other, state = image(x)
+        evaluations = found.pop().evaluations if found else 0
+        found.append(FixedPoint(x, state, _largest(other - x), evaluations + 1))
+        return other - x
+
+    try:
+        agreed = optimize.root(
+            off,
+            start,
+            method="anderson",
+            options={
+                "fatol": tolerance,
+                "tol_norm": _largest,
+                "maxiter": _MOST_ITERATIONS - 1,  # after the first
+                "line_search": None,  # it would try states far from the last one
+                "jac_options": {"alpha": _MIXED, "M": _KEPT},
+            },
+        ).success
+    except NoSteadyStateError:
+        if not found:
+            raise
+        agreed = False  # a step to where there is no image
+    if not agreed:
+        raise NoSteadyStateError(
+            f"no agreement after {found[-1].evaluations} iterations: what is looked for still "
+            f"changes by {found[-1].residual:.2g}"
+        )
+    return found[-1]
 
 
-def _step(points: list[Array], residuals: list[Array]) -> Array:
-    """Return the step from the last point, from the way the residuals changed on the last few."""
-    step = _MIXED * residuals[-1]
-    if len(points) > 1:
-        moves, changes = (np.diff(np.array(each), axis=0).T for each in (points, residuals))
-        shares = np.linalg.lstsq(changes, residuals[-1], rcond=_LEAST_DIRECTION)[0]
-        step = step - (moves + _MIXED * changes) @ shares
-    return np.clip(step, -_LONGEST, _LONGEST)
+def _largest(residual: Array) -> float:
+    return float(np.abs(residual).max())

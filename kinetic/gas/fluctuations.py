@@ -42,56 +42,76 @@ the border it is not.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag, eigvals, solve_continuous_lyapunov
 
-from crazybilliards.kinetic.gas.cells import Cells, of_cells
-from crazybilliards.kinetic.gas.collision_moments import CollisionMoments, moments_of_collisions
+from crazybilliards.kinetic.gas.cells import Cells, means
 from crazybilliards.kinetic.gas.mean_state import Medium, NoSteadyStateError
-from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
-
-
-class Problem(NamedTuple):
-    """A chain in the units of the gas, its cells, and what a collision does."""
-
-    medium: Medium
-    cells: Cells
-    moments: CollisionMoments
-
-    @classmethod
-    def of(cls, chain: Chain, cells: Cells) -> Problem:
-        """Make the problem of a chain."""
-        return cls(Medium.of(chain), cells, moments_of_collisions(chain.restitution))
-
-    @property
-    def distances(self) -> Array:
-        """Rods across the K contacts: M - 1 of cells, and two at walls."""
-        return self.cells.all_distances(self.medium.walled)
-
-    @property
-    def inner(self) -> slice:
-        """Which of all contacts lie between two cells."""
-        return slice(1, -1) if self.medium.walled else slice(None)
 
 
 class Background(NamedTuple):
     """The steady state that pairs fluctuate about, at all K contacts; ``stiffness`` at cells."""
 
-    density: Array  # n, rods per length where they collide, P/Theta
+    medium: Medium
+    cells: Cells
+    density: Array  # n, rods per length where they collide
     gap: Array  # g, the mean gap of two rods
     temperature: Array  # Theta
     pressure: Array  # P
     strength: Array  # b, 0 at walls
     shared: Array  # h_c, the covariance of neighbours' velocities
+    collective: Array  # K h_uu, the variance of the velocities of neighbourhoods
     stiffness: Array  # K, (M,)
+
+    @property
+    def loss(self) -> Array:
+        """Lambda."""
+        energy = self.medium.moments.energy
+        return np.asarray(self.strength * energy * self.density * self.temperature**1.5)
+
+    @property
+    def mean_gaps(self) -> Array:
+        """Distances of neighbouring cells, and of the outermost ones from walls."""
+        return self.cells.all_distances * self.gap
+
+    @property
+    def parts(self) -> tuple[slice, slice, slice, slice]:
+        """Places of u, V (cells), Theta (contacts) and q (cells but those at open ends)."""
+        M, K = self.cells.rods.size, self.gap.size
+        return (
+            slice(0, M),
+            slice(M, 2 * M),
+            slice(2 * M, 2 * M + K),
+            slice(2 * M + K, 2 * M + 2 * K - 1),
+        )
+
+    @property
+    def steps(self) -> Array:
+        """The matrix from cells to contacts: the next cell minus this one, a wall being 0."""
+        whole = np.eye(self.cells.rods.size)
+        return np.diff(np.pad(whole, ((1, 1), (0, 0))) if self.cells.walled else whole, axis=0)
+
+    @property
+    def with_flux(self) -> slice:
+        """Which cells have a heat flux of their own: all but the last at open ends."""
+        return slice(None) if self.cells.walled else slice(1, -1)
+
+    def on(self, cells: Cells) -> Background:
+        """Return the state on other cells."""
+        old, new = self.cells.all_labels, cells.all_labels
+        fields = {name: np.interp(new, old, getattr(self, name)) for name in self._fields[2:-1]}
+        stiffness = np.interp(cells.centres, self.cells.centres, self.stiffness)
+        return self._replace(cells=cells, **fields, stiffness=stiffness)
 
 
 class PairCovariance(NamedTuple):
     """Stationary covariances h between M cells or M - 1 contacts."""
 
+    cells: Cells
     velocity: Array  # of cells
     displacement: Array  # of cells
     gap: Array  # of contacts, relative to the mean gaps
@@ -100,17 +120,24 @@ class PairCovariance(NamedTuple):
 
 
 class LinearResponse(NamedTuple):
-    """M and Q for a chain, in even and odd halves under its mirror image."""
+    """M and Q for a chain."""
 
     generator: Array
     noise: Array
-    bases: tuple[Array, Array]  # columns: even, odd
+    scale: Array  # the size of every unknown, which keeps the equations well conditioned
+    fields: tuple[tuple[int, int], ...]  # number of unknowns, sign in the mirror image
+
+    def halves(self) -> Iterator[tuple[Array, Array, Array]]:
+        """Return scaled M and Q in the even and the odd half, and the basis of the half."""
+        for parity in (1, -1):
+            basis = block_diag(*(_mirror_basis(size, parity * sign) for size, sign in self.fields))
+            to, back = basis / self.scale[:, None], basis * self.scale[:, None]
+            yield to.T @ self.generator @ back, to.T @ self.noise @ to, back
 
     def stationary(self) -> Array:
         """Return h."""
         h = np.zeros_like(self.noise)
-        for basis in self.bases:
-            generator, noise = (basis.T @ matrix @ basis for matrix in (self.generator, self.noise))
+        for generator, noise, basis in self.halves():
             with warnings.catch_warnings():
                 warnings.simplefilter("error", RuntimeWarning)  # rates too far apart for doubles
                 try:
@@ -122,23 +149,16 @@ class LinearResponse(NamedTuple):
 
     def largest_growth(self) -> float:
         """Return the largest rate at which a deviation grows; negative: all of them decay."""
-        return max(float(eigvals(b.T @ self.generator @ b).real.max()) for b in self.bases)
+        return max(float(eigvals(generator).real.max()) for generator, *_ in self.halves())
 
 
-def dissipation(problem: Problem, state: Background) -> Array:
-    """Return Lambda at all contacts."""
-    energy = problem.moments.energy
-    return np.asarray(state.strength * energy * state.density * state.temperature**1.5)
-
-
-def covariances(problem: Problem, state: Background, response: LinearResponse) -> PairCovariance:
+def covariances(state: Background, response: LinearResponse) -> PairCovariance:
     """Return what is stationary, of a response that may have more fields."""
-    scale, inner = scales(problem, state), problem.inner
-    h = response.stationary()[: scale.size, : scale.size] * np.outer(scale, scale)
-    u, V, Th, _ = parts(problem)
-    relative = (steps(problem) / _mean_gaps(problem, state)[:, None])[inner]
+    h, inner, (u, V, Th, _) = response.stationary(), state.cells.inner, state.parts
+    relative = (state.steps / state.mean_gaps[:, None])[inner]
     Theta = state.temperature[inner]
     return PairCovariance(
+        state.cells,
         velocity=h[V, V],
         displacement=h[u, u],
         gap=relative @ h[u, u] @ relative.T,
@@ -147,130 +167,80 @@ def covariances(problem: Problem, state: Background, response: LinearResponse) -
     )
 
 
-def linear_response(problem: Problem, state: Background) -> LinearResponse:
-    """Return M and Q, every field in units of its own size, which keeps them well conditioned."""
-    M, scale = problem.cells.rods.size, scales(problem, state)
-    generator = _generator(problem, state) * scale / scale[:, None]
-    noise = _noise(problem, state) / np.outer(scale, scale)
-    _, _, Th, q = parts(problem)
+def linear_response(state: Background) -> LinearResponse:
+    """Return M and Q."""
+    M, Theta, (_, _, Th, q) = state.cells.rods.size, state.temperature, state.parts
+    sizes = state.mean_gaps.mean(), np.sqrt(Theta.mean())
+    scale = np.concatenate([np.repeat(sizes, M), Theta, means(Theta) ** 1.5])
     # u, V and q change sign in the mirror.
-    fields = ((M, -1), (M, -1), (Th.stop - Th.start, 1), (q.stop - q.start, -1))
-    even, odd = (
-        block_diag(*(mirror_basis(size, parity * sign) for size, sign in fields))
-        for parity in (1, -1)
-    )
-    return LinearResponse(generator, noise, (even, odd))
+    fields = (M, -1), (M, -1), (Th.stop - Th.start, 1), (q.stop - q.start, -1)
+    return LinearResponse(_generator(state), _noise(state), scale, fields)
 
 
-def _generator(problem: Problem, state: Background) -> Array:
-    medium, cells, moments = problem
-    M, apart, step = cells.rods.size, problem.distances, steps(problem)
-    n, Theta, P, gaps = state.density, state.temperature, state.pressure, _mean_gaps(problem, state)
-    loss, damping = dissipation(problem, state), medium.damping
-    u, V, Th, q = parts(problem)
+def _generator(state: Background) -> Array:
+    medium, cells = state.medium, state.cells
+    apart, step, some = cells.all_distances, state.steps, state.with_flux
+    Theta, P, gaps, loss = state.temperature, state.pressure, state.mean_gaps, state.loss
+    u, V, Th, q = state.parts
     A = np.zeros((q.stop, q.stop))
     force = step.T / cells.rods[:, None]  # minus the difference of the pressures on both sides
-    A[u, V] = np.eye(M)
-    A[V, V] = -damping * np.eye(M)
+    A[u, V] = np.eye(cells.rods.size)
+    A[V, V] = -medium.damping * np.eye(cells.rods.size)
     A[V, u] = -np.diag(state.stiffness) - force @ (step * (P / gaps)[:, None])
     A[V, Th] = force * (P / Theta)
     A[Th, V] = -2 * (P / apart)[:, None] * step
     A[Th, u] = (loss / gaps)[:, None] * step
-    A[Th, Th] = -np.diag(2 * damping + 1.5 * loss / Theta)
-    n, Theta, b = (_means(values) for values in (n, Theta, state.strength))
-    some = _with_flux(problem)
+    A[Th, Th] = -np.diag(2 * medium.damping + 1.5 * loss / Theta)
+    n, Theta, b = (means(values) for values in (state.density, Theta, state.strength))
     A[Th, q] = -step[:, some] * n / apart[:, None]
     across = np.diff(np.eye(apart.size), axis=0)
     A[q, Th] = -3 * (n * Theta / cells.rods[some])[:, None] * across
-    A[q, q] = -np.diag(3 * damping + b * moments.decay * n * np.sqrt(Theta))
+    A[q, q] = -np.diag(3 * medium.damping + b * medium.moments.decay * n * np.sqrt(Theta))
     return A
 
 
-def _noise(problem: Problem, state: Background) -> Array:
-    medium, cells, moments = problem
-    N, inner, some = cells.rods, problem.inner, _with_flux(problem)
-    n, Theta, b = state.density, state.temperature, state.strength
-    loss = dissipation(problem, state)
-    u, V, Th, q = parts(problem)
+def _noise(state: Background) -> Array:
+    cells, moments, some = state.cells, state.medium.moments, state.with_flux
+    N, inner, loss, Theta = cells.rods, cells.inner, state.loss, state.temperature
+    collisions = state.strength * state.density
+    u, V, Th, q = state.parts
     Q = np.zeros((q.stop, q.stop))
-    kept = 2 * medium.damping * _at_cells(problem, state.shared) / N
+    shared = means(state.shared if cells.walled else np.pad(state.shared, 1, mode="edge"))
     # Of the contacts that one between cells stands for, the others lie within the two.
-    within = (1 - 1 / cells.distances) * loss[inner]
+    within = _of_cell_means(cells, (1 - 1 / cells.distances) * loss[inner])
     between = loss[inner] / (2 * N[1:] * N[:-1])
-    Q[V, V] = np.diag(_of_cell_means(cells, within) + kept)
+    Q[V, V] = np.diag(within + 2 * state.medium.damping * shared / N)
     Q[V, V] += np.diag(between, 1) + np.diag(between, -1)
-    Q[u, Th] = _displacements(problem) * (loss * state.gap)
+    Q[u, Th] = _displacements(state) * (loss * state.gap)
     Q[Th, u] = Q[u, Th].T
-    Q[Th, Th] = np.diag(b * moments.temperature * n * Theta**2.5 / problem.distances)
-    of_flux = np.diag(_of_cell_means(cells, (b * moments.velocity_heat * n * Theta**2.5)[inner]))
-    Q[V, q] = of_flux[:, some]
+    Q[Th, Th] = np.diag(moments.temperature * collisions * Theta**2.5 / cells.all_distances)
+    of_flux = _of_cell_means(cells, (moments.velocity_heat * collisions * Theta**2.5)[inner])
+    Q[V, q] = np.diag(of_flux)[:, some]
     Q[q, V] = Q[V, q].T
-    Q[q, q] = np.diag(_of_cell_means(cells, (b * moments.heat * n * Theta**3.5)[inner])[some])
+    of_flux = _of_cell_means(cells, (moments.heat * collisions * Theta**3.5)[inner])
+    Q[q, q] = np.diag(of_flux[some])
     return Q
 
 
-def _displacements(problem: Problem) -> Array:
+def _displacements(state: Background) -> Array:
     """Return the displacements of cells, (M, K), for a unit that each gap is longer.
 
     Without walls the centre of mass is at rest. Between walls the other gaps give way evenly, by
     the smallest change that keeps their sum.
     """
-    if problem.medium.walled:
-        return np.asarray(np.linalg.pinv(steps(problem)))
-    N = problem.cells.rods
+    if state.cells.walled:
+        return np.asarray(np.linalg.pinv(state.steps))
+    N = state.cells.rods
     sums = np.tril(np.ones((N.size, N.size - 1)), -1)
     return np.asarray(sums - N @ sums / N.sum())
 
 
 def _of_cell_means(cells: Cells, strength: Array) -> Array:
     """Return the noise of cells' means: a contact gives each of its two sides one half."""
-    halves = cells.distances * strength / 2
-    return np.asarray((np.append(halves, 0.0) + np.append(0.0, halves)) / cells.rods**2)
+    return np.asarray(means(np.pad(cells.distances * strength, 1)) / cells.rods**2)
 
 
-def _at_cells(problem: Problem, at_contacts: Array) -> Array:
-    return _means(at_contacts) if problem.medium.walled else of_cells(at_contacts)
-
-
-def _with_flux(problem: Problem) -> slice:
-    """Return which cells have a heat flux of their own: all but the last at open ends."""
-    return slice(None) if problem.medium.walled else slice(1, -1)
-
-
-def parts(problem: Problem) -> tuple[slice, slice, slice, slice]:
-    """Return the places of u, V (cells), Theta (contacts) and q (cells but those at open ends)."""
-    M, K = problem.cells.rods.size, problem.distances.size
-    return (
-        slice(0, M),
-        slice(M, 2 * M),
-        slice(2 * M, 2 * M + K),
-        slice(2 * M + K, 2 * M + 2 * K - 1),
-    )
-
-
-def steps(problem: Problem) -> Array:
-    """Return the matrix from cells to contacts: the next cell minus this one, a wall being 0."""
-    M = problem.cells.rods.size
-    whole = np.diff(np.eye(M + 2)[:, 1:-1], axis=0)
-    return whole if problem.medium.walled else whole[1:-1]
-
-
-def _mean_gaps(problem: Problem, state: Background) -> Array:
-    return problem.distances * state.gap
-
-
-def _means(at_contacts: Array) -> Array:
-    return (at_contacts[1:] + at_contacts[:-1]) / 2
-
-
-def scales(problem: Problem, state: Background) -> Array:
-    """Return the size of every field."""
-    M, Theta = problem.cells.rods.size, state.temperature
-    gap = np.full(M, _mean_gaps(problem, state).mean())
-    return np.concatenate([gap, np.full(M, np.sqrt(Theta.mean())), Theta, _means(Theta) ** 1.5])
-
-
-def mirror_basis(size: int, sign: int) -> Array:
+def _mirror_basis(size: int, sign: int) -> Array:
     """Return the orthonormal basis of vectors whose mirror image is ``sign`` times themselves."""
     half = size // 2
     basis = np.zeros((size, half + (size % 2 if sign == 1 else 0)))

@@ -11,6 +11,11 @@ one between the outermost cells and the walls, with the mean gap g = dy/dl and T
 An elastic wall takes nothing: the rod at it loses energy at one contact only, and is hotter. At an
 inelastic one half of the velocities are smaller by e_w. There T = e_w T(incoming), because slow
 rods stay longer, and the loss is (1 - e_w) P sqrt(8/pi) sqrt(T/e_w).
+
+**Quadratic springs** have the mean force K <(x + u) |x + u|> where a place is displaced by x + u. x
+is its mean displacement, and u is Gaussian with the variance h_uu of neighbourhoods. A rod also has
+the local variance T/sqrt(k^2 + 4 k T/g^2) of a lattice of springs k whose neighbours repel one
+another with the stiffness T/g^2. Fluctuations of rods feel the mean slope k = 2 K <|x + u|>.
 """
 
 from __future__ import annotations
@@ -22,13 +27,13 @@ import numpy as np
 from scipy.linalg import solve_banded
 from scipy.special import erf, ndtri
 
-from crazybilliards.kinetic.gas.cells import Cells
-from crazybilliards.kinetic.gas.collision_moments import moments_of_collisions
+from crazybilliards.kinetic.gas.cells import Cells, means
+from crazybilliards.kinetic.gas.collision_moments import CollisionMoments, moments_of_collisions
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 
 _SAME = 1e-7  # relative change of T, from which on it has converged
-_MOST_TURNS, _MOST_STEPS = 400, 100
+_MOST_TURNS, _MOST_STEPS, _TURNS_OF_SLOPE = 400, 100, 20
 _MIXED = 0.7  # share of a new T
 _CLOSER = 0.8  # a step may take so much of any gap
 _LARGEST_GAIN = 0.99  # of a third moment by collisions at e > 1, over its damping
@@ -50,13 +55,12 @@ class Medium(NamedTuple):
     lattice: float  # distance of the anchors
     wall: float  # place of the right wall; inf: open ends
     wall_loss: float  # of v^2, in units of P sqrt(T)
-    energy: float  # E(e)
-    decay: float  # c(e)
+    restitution: float
+    moments: CollisionMoments
 
     @classmethod
     def of(cls, chain: Chain) -> Medium:
         """Make the medium of a chain."""
-        moments = moments_of_collisions(chain.restitution)
         length, n = unit_length(chain), chain.potential_exponent
         springs, e_w = chain.stiffness > 0, chain.wall_restitution
         return cls(
@@ -68,14 +72,13 @@ class Medium(NamedTuple):
             chain.lattice_gap / length if springs else 0.0,
             chain.walls[1] / length,
             (1 - e_w) * np.sqrt(8 / (np.pi * e_w)),
-            moments.energy,
-            moments.decay,
+            chain.restitution,
+            moments_of_collisions(chain.restitution),
         )
 
-    @property
-    def walled(self) -> bool:
-        """True in a box."""
-        return bool(np.isfinite(self.wall))
+    def anchors(self, cells: Cells) -> Array:
+        """Return y0 of the cells."""
+        return np.asarray(self.lattice * (cells.centres - self.size / 2))
 
 
 def unit_length(chain: Chain) -> float:
@@ -94,49 +97,55 @@ class Balance(NamedTuple):
 
 def first_places(medium: Medium, cells: Cells) -> Array:
     """Return places to begin with."""
-    label = cells.centres - medium.size / 2
-    if not medium.walled:
-        return ndtri(cells.centres / medium.size) + medium.lattice * label
+    if not cells.walled:
+        return ndtri(cells.centres / medium.size) + medium.anchors(cells)
     free = 1.8 * medium.wall / medium.size
-    return label * (min(medium.lattice, free) if medium.lattice else free)
+    gap = min(medium.lattice, free) if medium.lattice else free
+    return np.asarray((cells.centres - medium.size / 2) * gap)
 
 
 def balanced(medium: Medium, cells: Cells, y: Array, stress: Array, spread: Array) -> Balance:
     """Balance the forces from places y on, by Newton's method.
 
-    ``stress``: P g = phi T at all contacts. ``spread``: h_uu at the cells, which changes the mean
-    force of quadratic springs.
+    ``stress``: P g = phi T at all contacts. ``spread``: h_uu at the cells.
     """
-    N, d = cells.rods, cells.all_distances(medium.walled)
-    pressure, anchor = stress * d, medium.lattice * (cells.centres - medium.size / 2)
+    pressure = stress * cells.all_distances
     for _ in range(_MOST_STEPS):
         room = _steps(y, medium.wall)
-        F, slope = _mean_force(medium, y - anchor, spread)
+        F, slope = mean_force(medium, y - medium.anchors(cells), spread)
         P = pressure / room
-        left, right = sides(P, medium.walled)
-        stiff_left, stiff_right = sides(P / room, medium.walled)
-        inner = (P / room)[1:-1] if medium.walled else P / room
-        bands = banded(N * slope + stiff_left + stiff_right, -inner)
-        step = solve_banded((1, 1), bands, left - right - N * F)
-        change = _steps(step, 0.0 if medium.walled else np.inf)
+        left, right = cells.sides(P)
+        off = left - right - cells.rods * F
+        stiffness = cells.rods * slope + np.add(*cells.sides(P / room))
+        step = _solve_banded(stiffness, -(P / room)[cells.inner], off)
+        change = _steps(step, 0.0 if cells.walled else np.inf)
         closing = change < 0
         share = min(1.0, float((-_CLOSER * room[closing] / change[closing]).min(initial=1.0)))
         y = y + share * step
         if share == 1 and np.abs(change / room).max() < 1e-11:
             break
     room = _steps(y, medium.wall)
-    return Balance(y, room / d, pressure / room)
+    return Balance(y, room / cells.all_distances, pressure / room)
 
 
-def _mean_force(medium: Medium, x: Array, spread: Array) -> tuple[Array, Array]:
-    """Return the mean of F and of its slope where x is Gaussian with the variance ``spread``."""
+def mean_force(medium: Medium, x: Array, variance: Array) -> tuple[Array, Array]:
+    """Return the mean of F and of its slope where x is Gaussian with this variance."""
     K = medium.stiffness
     if medium.exponent == 2:
         return K * x, np.full(x.size, K)
-    width = np.sqrt(np.maximum(spread, 1e-12))
+    width = np.sqrt(np.maximum(variance, 1e-12))
     beyond = erf(x / width / np.sqrt(2))
     gauss = width * np.sqrt(2 / np.pi) * np.exp(-((x / width) ** 2) / 2)
     return K * ((x**2 + width**2) * beyond + x * gauss), 2 * K * (gauss + x * beyond)
+
+
+def mean_slope(medium: Medium, x: Array, T: Array, gap: Array | float, spread: Array) -> Array:
+    """Return k of quadratic springs at the cells. ``spread``: h_uu."""
+    k = np.full(x.size, 2 * medium.stiffness)
+    for _ in range(_TURNS_OF_SLOPE):
+        local = T / np.sqrt(k**2 + 4 * k * T / gap**2)
+        k = mean_force(medium, x, local + np.maximum(spread, 0.0))[1]
+    return k
 
 
 def heated(
@@ -145,7 +154,7 @@ def heated(
     T: Array,
     forces: Callable[[Array], Balance],
     strength: Callable[[Array], Array],
-    shared: Array | float,
+    shared: Array,
 ) -> tuple[Array, Balance]:
     """Balance the heat, beginning with the temperatures T of the cells.
 
@@ -154,12 +163,16 @@ def heated(
     """
     noise = 2 * medium.damping * cells.rods
     for _ in range(_MOST_TURNS):
-        balance = forces(T)
-        conducted, across, lost, lost_across = heat_operator(
-            medium, cells, T, balance, strength((T[1:] + T[:-1]) / 2)
-        )
-        bands = banded(noise + conducted + lost, across + lost_across)
-        new = np.asarray(solve_banded((1, 1), bands, noise * (1 - shared)))
+        balance, middle = forces(T), means(T)
+        P, a = balance.force[cells.inner], strength(middle)
+        conducted = conductance(medium, cells, middle, P, a)
+        # Conduction and loss are linear in T with the coefficients of the last one. Of the loss one
+        # half is taken for T of each side, and each side has a half of it.
+        lost = a * medium.moments.energy * P * np.sqrt(middle) / middle * cells.distances / 4
+        taken = noise + sum(np.pad(conducted + lost, each) for each in ((0, 1), (1, 0)))
+        if cells.walled:
+            taken[[0, -1]] += medium.wall_loss * balance.force[[0, -1]] / np.sqrt(T[[0, -1]])
+        new = _solve_banded(taken, lost - conducted, noise * (1 - shared))
         if not (np.isfinite(new).all() and (new > 0).all()):
             raise NoSteadyStateError("collisions give more than damping takes")
         change = float(np.abs(np.log(new / T)).max())
@@ -169,46 +182,20 @@ def heated(
     raise NoSteadyStateError(f"the mean state still changes by {change:.2g}")
 
 
-def heat_operator(
-    medium: Medium, cells: Cells, T: Array, balance: Balance, strength: Array
-) -> tuple[Array, Array, Array, Array]:
-    """Return conduction and loss of the cells, both linear in T: their diagonals and side ones.
-
-    The coefficients are those of T.
-    """
-    d, middle = cells.distances, (T[1:] + T[:-1]) / 2
-    force = balance.force[1:-1] if medium.walled else balance.force
-    n = force / middle
-    collisions = n * np.sqrt(middle)
-    decay = collisions * strength * medium.decay
-    rate = 3 * medium.damping + np.maximum(decay, -_LARGEST_GAIN * 3 * medium.damping)
-    conduction = 3 * n**2 * middle / rate / d
-    loss = strength * medium.energy * collisions * d / 4  # half of it for T of each side
-    of_conduction, of_loss = (np.add(*sides(values, False)) for values in (conduction, loss))
-    if medium.walled:
-        ends = [0, -1]
-        of_loss[ends] += medium.wall_loss * balance.force[ends] / np.sqrt(T[ends])
-    return of_conduction, -conduction, of_loss, loss
+def conductance(medium: Medium, cells: Cells, T: Array, P: Array, strength: Array) -> Array:
+    """Return the heat flux between cells over the difference of their T, with the sign changed."""
+    n = P / T
+    least = -_LARGEST_GAIN * 3 * medium.damping
+    decay = np.maximum(strength * medium.moments.decay * n * np.sqrt(T), least)
+    return np.asarray(3 * n**2 * T / (3 * medium.damping + decay) / cells.distances)
 
 
-def banded(diagonal: Array, beside: Array) -> Array:
-    """Return a symmetric tridiagonal matrix as scipy's ``solve_banded`` takes it."""
-    return np.array([np.append(0.0, beside), diagonal, np.append(beside, 0.0)])
-
-
-def between(at_cells: Array, walled: bool) -> Array:
-    """Return the means at all contacts; at a wall the value of its cell."""
-    means = (at_cells[1:] + at_cells[:-1]) / 2
-    return np.concatenate([at_cells[:1], means, at_cells[-1:]]) if walled else means
-
-
-def sides(at_contacts: Array, walled: bool) -> tuple[Array, Array]:
-    """Return what lies left and right of each cell, 0 beyond open ends."""
-    if walled:
-        return at_contacts[:-1], at_contacts[1:]
-    return np.append(0.0, at_contacts), np.append(at_contacts, 0.0)
+def _solve_banded(diagonal: Array, beside: Array, right: Array) -> Array:
+    """Solve a symmetric tridiagonal system."""
+    bands = np.array([np.pad(beside, (1, 0)), diagonal, np.pad(beside, (0, 1))])
+    return np.asarray(solve_banded((1, 1), bands, right))
 
 
 def _steps(y: Array, wall: float) -> Array:
     """Return the differences of neighbouring places, to walls at -wall and wall as well."""
-    return np.diff(np.concatenate([[-wall], y, [wall]]) if np.isfinite(wall) else y)
+    return np.diff(np.pad(y, 1, constant_values=(-wall, wall)) if np.isfinite(wall) else y)

@@ -30,7 +30,6 @@ from threadpoolctl import threadpool_limits
 from crazybilliards.kinetic.accuracy import Accuracy, expected
 from crazybilliards.kinetic.gas.agreement import in_agreement, mean_field
 from crazybilliards.kinetic.gas.cells import make_cells
-from crazybilliards.kinetic.gas.fixed_point import NoFixedPointError
 from crazybilliards.kinetic.gas.mean_state import NoSteadyStateError
 from crazybilliards.kinetic.gas.stationary_result import in_vocabulary
 from crazybilliards.kinetic.requirements import require_chain
@@ -101,11 +100,12 @@ def steady_state(chain: Chain, *, correlations: bool = True) -> xr.Dataset:
     """
     check_steady_state(chain, correlations=correlations)
     correlated = correlations and chain.restitution <= 1 and chain.size >= _FEWEST_CORRELATED
-    solve, cells = in_agreement if correlated else mean_field, make_cells(chain.size, whole=True)
+    solve = in_agreement if correlated else mean_field
+    cells = make_cells(chain.size, walled=chain.box > 0)
     try:
         with threadpool_limits(limits=1, user_api="blas"):  # small matrices: more only wait
             found = solve(chain, cells)
-    except (NoFixedPointError, NoSteadyStateError) as error:
+    except NoSteadyStateError as error:
         raise ValueError(f"the gas has no steady state that could be found: {error}") from error
     # Below e = 1 the mean field was not measured.
     measured = correlations or chain.restitution >= 1

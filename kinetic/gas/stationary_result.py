@@ -11,7 +11,7 @@ from scipy.interpolate import PchipInterpolator
 from crazybilliards.kinetic.accuracy import Accuracy, warn_if_unmeasured
 from crazybilliards.kinetic.gas.agreement import Fluctuations, Steady
 from crazybilliards.kinetic.gas.cells import at_distance, of_rods
-from crazybilliards.kinetic.gas.fluctuations import dissipation
+from crazybilliards.kinetic.gas.mean_state import conductance
 from crazybilliards.kinetic.rods.places import (
     MOST_RODS,
     MOST_RODS_WITH_GAP,
@@ -42,7 +42,7 @@ class Rods(NamedTuple):
 
 def in_vocabulary(chain: Chain, found: Steady, errors: Accuracy) -> xr.Dataset:
     """Return the result of ``steady_state``, with the errors of the theory."""
-    length, W = found.problem.medium.length, chain.free_velocity_width
+    length, W = found.medium.length, chain.free_velocity_width
     rods, of = rods_of(chain, found), found.fluctuations
     variables: Variables = {
         "velocity_width": ("particle", W * np.sqrt(rods.velocity_variance)),
@@ -57,7 +57,7 @@ def in_vocabulary(chain: Chain, found: Steady, errors: Accuracy) -> xr.Dataset:
     variables |= fields
     if of is not None:
         variables |= _of_pairs(chain, found, of, rods)
-        coordinates["mode"] = np.arange(float(found.problem.cells.rods.size))
+        coordinates["mode"] = np.arange(float(found.cells.rods.size))
         if "velocity_covariance" in variables:
             coordinates["separation"] = np.arange(float(chain.size))
     theory = "gas along labels" if of else "gas along labels, mean field"
@@ -77,27 +77,27 @@ def in_vocabulary(chain: Chain, found: Steady, errors: Accuracy) -> xr.Dataset:
 
 def rods_of(chain: Chain, found: Steady) -> Rods:
     """Return the moments of the rods."""
-    medium, cells = found.problem.medium, found.problem.cells
+    medium, cells = found.medium, found.cells
     middles: Array = np.arange(0.5, chain.size)
     place, T = (
         np.interp(middles, cells.centres, field)
         for field in (found.mean.place, found.mean.temperature)
     )
     own = _own_widths(chain, found, T)
-    if found.fluctuations is None or found.displaced is None:
+    if found.fluctuations is None:
         share, K = 1 / chain.size, medium.stiffness
         of_centre = share * (1 - T) / K if medium.exponent == 2 and K else 0.0
         return Rods(place, np.sqrt(own**2 + of_centre), (1 - share) * T + share)
-    collective = np.interp(middles, cells.contacts, found.fluctuations.closure.collective)
-    of = found.displaced
-    displaced = at_distance(of.pairs.displacement, of.cells.centres, middles, 0.0)
+    collective = np.interp(middles, cells.contacts, found.closure.collective)
+    of = found.fluctuations.displaced
+    displaced = at_distance(of.displacement, of.cells.centres, middles, 0.0)
     width = np.sqrt(np.maximum(own**2 + displaced, 0.0))
     return Rods(place, width, T + collective)
 
 
 def _own_widths(chain: Chain, found: Steady, T: Array) -> Array:
     """Return the widths of the rods in their neighbourhoods; NaN of too many rods."""
-    length = found.problem.medium.length
+    length = found.medium.length
     if found.labels is not None and chain.size <= MOST_RODS:
         law = exchangeable(chain.size)
         score, place = found.labels.score, found.labels.place
@@ -113,8 +113,8 @@ def _own_widths(chain: Chain, found: Steady, T: Array) -> Array:
 
 def _over_positions(chain: Chain, found: Steady, rods: Rods) -> tuple[dict[str, Array], Variables]:
     """Return the positions x, and what lies over them."""
-    medium, W, R = found.problem.medium, chain.free_velocity_width, chain.radius
-    cells = found.labels.fine if found.labels else found.problem.cells
+    medium, W, R = found.medium, chain.free_velocity_width, chain.radius
+    cells = found.labels.fine if found.labels else found.cells
     y = medium.length * (found.labels.place if found.labels else found.mean.place)
     label, y = _to_the_ends(cells.centres - chain.size / 2, y, chain.size / 2)
     places = y + 2 * R * label
@@ -168,35 +168,24 @@ def _heat_flux(chain: Chain, found: Steady, label: Array) -> Array:
     if found.labels is not None and found.flux is not None:
         where, flux = found.labels.fine.centres, found.flux
     else:
-        where, flux = found.problem.cells.contacts, _conducted(chain, found)
+        mean, cells = found.mean, found.cells
+        T, P = mean.contact_temperature, mean.force[cells.inner]
+        through = conductance(found.medium, cells, T, P, found.closure.strength(T))
+        where, flux = cells.contacts, -through * np.diff(mean.temperature)
     W = chain.free_velocity_width
     places, ends = (np.pad(field, 1) for field in (where, flux))
     places[-1] = chain.size
-    unit = chain.mass * W**3 / (2 * found.problem.medium.length)
+    unit = chain.mass * W**3 / (2 * found.medium.length)
     return np.asarray(unit * np.interp(label, places, ends))
-
-
-def _conducted(chain: Chain, found: Steady) -> Array:
-    """Return n q of the closure at the contacts of cells."""
-    medium, mean, inner = found.problem.medium, found.mean, found.problem.inner
-    T, force = mean.contact_temperature[inner], mean.force[inner]
-    n = force / T
-    strength = np.ones(T.size)
-    if found.fluctuations is not None:
-        strength = found.fluctuations.closure.strength(T, chain.restitution)
-    rate = 3 * medium.damping + np.maximum(strength * medium.decay * n * np.sqrt(T), 0.0)
-    slope = np.diff(mean.temperature) / found.problem.cells.distances
-    return np.asarray(-3 * n**2 * T / rate * slope)
 
 
 def _of_pairs(chain: Chain, found: Steady, of: Fluctuations, rods: Rods) -> Variables:
     """Return what two rods have in common."""
-    medium, cells, inner = found.problem.medium, found.problem.cells, found.problem.inner
+    medium, cells, state = found.medium, found.cells, of.background
     W, contacts = chain.free_velocity_width, np.arange(1.0, chain.size)
-    lost = dissipation(found.problem, of.background)
     shared, pressure, loss = (
-        np.interp(contacts, cells.contacts, field[inner])
-        for field in (of.background.shared, of.background.pressure, lost)
+        np.interp(contacts, cells.contacts, field[cells.inner])
+        for field in (state.shared, state.pressure, state.loss)
     )
     variance = rods.velocity_variance
     own = (variance[1:] + variance[:-1]) / 2
@@ -218,7 +207,7 @@ def _of_pairs(chain: Chain, found: Steady, of: Fluctuations, rods: Rods) -> Vari
 
 def _mode_variances(chain: Chain, found: Steady, of: Fluctuations, rods: Rods) -> Array:
     """Return <|v_q|^2>, v_q = sum_i sqrt((2 or, for q = 0, 1)/L) cos(pi q (i - 1/2)/L) v_i."""
-    cells, size = found.problem.cells, chain.size
+    cells, size = found.cells, chain.size
     q = np.arange(cells.rods.size)[:, None]
 
     def waves(labels: Array) -> Array:
@@ -227,7 +216,7 @@ def _mode_variances(chain: Chain, found: Steady, of: Fluctuations, rods: Rods) -
         )
 
     middles = np.arange(0.5, size)
-    shared = np.interp(middles, cells.contacts, of.background.shared[found.problem.inner])
+    shared = np.interp(middles, cells.contacts, of.background.shared[cells.inner])
     local = waves(middles) ** 2 @ (rods.velocity_variance - shared)
     weighted = waves(cells.centres) * cells.rods
     return np.asarray(local + np.einsum("qi,ij,qj->q", weighted, of.pairs.velocity, weighted))

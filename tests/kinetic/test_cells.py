@@ -7,18 +7,19 @@ from crazybilliards.kinetic.gas.cells import MOST, at_distance, cells_of_points,
 
 
 @pytest.mark.parametrize("size", [1, 10, MOST, MOST + 1, 1000, 100_000])
-@pytest.mark.parametrize("kind", ["cells", "whole", "points"])
+@pytest.mark.parametrize("kind", ["rods", "points"])
 def test_cells_hold_all_rods(size, kind):
-    cells = cells_of_points(size) if kind == "points" else make_cells(size, whole=kind == "whole")
+    make = cells_of_points if kind == "points" else make_cells
+    cells, walled = make(size), make(size, walled=True)
     assert cells.rods.sum() == pytest.approx(size)
-    assert (cells.rods > {"cells": 0.5, "whole": 1 - 1e-9, "points": 0}[kind]).all()
+    assert (cells.rods > {"rods": 1 - 1e-9, "points": 0}[kind]).all()
     np.testing.assert_allclose(cells.rods, cells.rods[::-1], atol=2e-15 * size, rtol=0)
     np.testing.assert_allclose(cells.centres + cells.centres[::-1], size)
     np.testing.assert_allclose(np.diff(cells.centres), cells.distances)
     np.testing.assert_allclose(cells.contacts, cells.rods.cumsum()[:-1])
-    walls = cells.all_distances(walled=True)
     beyond = 0.0 if kind == "points" else 0.5  # of a rod: a wall is where its neighbour would be
-    np.testing.assert_allclose(walls[[0, -1]], cells.centres[0] + beyond)
+    np.testing.assert_allclose(walled.all_distances[[0, -1]], cells.centres[0] + beyond)
+    np.testing.assert_array_equal(walled.all_labels[walled.inner], cells.all_labels)
     if kind != "points" and size <= MOST:
         np.testing.assert_allclose(cells.rods, 1)
 

@@ -8,7 +8,6 @@ from scipy.optimize import curve_fit
 from crazybilliards.kinetic.gas.agreement import in_agreement
 from crazybilliards.kinetic.gas.cells import make_cells
 from crazybilliards.kinetic.gas.displacements import relaxing_pairs
-from crazybilliards.kinetic.gas.fluctuations import scales
 from crazybilliards.kinetic.gas.stationary_result import rods_of
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -24,10 +23,10 @@ def test_the_centre_of_mass_is_displaced_as_if_alone(size, restitution):
     """The variance of independent points, and what neighbourhoods have in common: W^2/L."""
     chain = Chain(size=size, restitution=restitution)
     found = in_agreement(chain, make_cells(size))
-    labels, displaced = found.labels, found.displaced
+    labels, displaced = found.labels, found.fluctuations.displaced
     own = labels.fine.rods @ labels.place**2 / size
     rods = displaced.cells.rods
-    shared = rods @ displaced.pairs.displacement @ rods / size
+    shared = rods @ displaced.displacement @ rods / size
     assert own + shared == pytest.approx(1, abs=0.015)
 
 
@@ -52,20 +51,15 @@ def predicted(chain):
     """Return the damping of the waves 1 and 2 in the linear equation with the stress."""
     size = chain.size
     found = in_agreement(chain, make_cells(size))
-    problem, (closure, around, *_) = found.problem, found.fluctuations
-    response, _ = relaxing_pairs(problem, around, closure.collective)
-    T_f = around.temperature + around.shared - closure.collective
-    scale = np.append(scales(problem, around._replace(temperature=T_f)), np.ones(size - 1))
-    h = response.stationary() * np.outer(scale, scale)
+    response, _ = relaxing_pairs(found.fluctuations.background)
+    h = response.stationary()
     # Of independent points in their order, as evenly distributed ones have it.
     i = np.arange(1, size + 1)
     bridge = np.minimum.outer(i, i) * (size + 1 - np.maximum.outer(i, i))
-    own = rods_of(chain, found).width ** 2 - np.diag(found.displaced.pairs.displacement)
+    own = rods_of(chain, found).width ** 2 - np.diag(found.fluctuations.displaced.displacement)
     local = np.sqrt(own / np.diag(bridge))
     h[:size, :size] += bridge * np.outer(local, local)
-    step = expm(
-        response.generator * scale[:, None] / scale * STEP * np.sqrt(chain.stiffness / chain.mass)
-    )
+    step = expm(response.generator * STEP * np.sqrt(chain.stiffness / chain.mass))
     states = [waves_of(h[:, :size])]
     for _ in range(NUMBER - 1):
         states.append(step @ states[-1])

@@ -6,7 +6,7 @@ from independent_points import rods_of_independent_points
 from scipy.special import ndtr
 
 from crazybilliards.kinetic import force_balance, hydrodynamics, steady_state
-from crazybilliards.kinetic.gas.closure import Independent
+from crazybilliards.kinetic.gas.closure import Closure
 from crazybilliards.kinetic.rods.places import exchangeable
 from crazybilliards.model import Chain
 
@@ -36,7 +36,7 @@ def test_to_first_order_all_rods_lose_what_their_pairs_lose(size):
 @pytest.mark.parametrize(("size", "restitution"), [(6, 0.5), (20, 0.9)])
 def test_it_is_where_the_gas_in_time_comes_to_rest(size, restitution, monkeypatch):
     """In time the centre of mass is not apart: a = 1 - 1/L. Mutation: no 3 in the conductivity."""
-    monkeypatch.setattr(Independent, "strength", lambda _, T, e: np.full(T.size, 1 - 1 / size))
+    monkeypatch.setattr(Closure, "strength", lambda _, T: np.full(T.size, 1 - 1 / size))
     chain = Chain(size=size, restitution=restitution)
     start, how = force_balance(chain.replace(restitution=1)), {"every": 30.0, "progress": False}
     flow = hydrodynamics(chain, start, 30, velocity_variance="evolving", cells=100, **how)

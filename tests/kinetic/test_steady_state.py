@@ -7,9 +7,9 @@ import pytest
 
 from crazybilliards.comparison import deviation, smooth
 from crazybilliards.kinetic import equilibrium, steady_state
-from crazybilliards.kinetic.gas import agreement, mean_state
+from crazybilliards.kinetic.gas import agreement, fixed_point, mean_state
 from crazybilliards.kinetic.gas.cells import make_cells
-from crazybilliards.kinetic.gas.quadratic_springs import mean_slope
+from crazybilliards.kinetic.gas.mean_state import Medium, mean_slope
 from crazybilliards.kinetic.gas.stationary_result import rods_of
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
@@ -173,7 +173,7 @@ def test_heat_flows_from_the_border_to_where_collisions_take_it(theory):
 def test_mean_gaps_are_the_distances_of_mean_places(changes):
     """By order statistics of contacts, and of rods. Mutation: g without L/(L + 1)."""
     chain = Chain(size=20, **changes)
-    mean = agreement.in_agreement(chain, make_cells(20)).mean
+    mean = agreement.in_agreement(chain, make_cells(20, walled=chain.box > 0)).mean
     gaps = mean.gap[1:-1] if chain.box else mean.gap
     np.testing.assert_allclose(gaps, np.diff(mean.place), rtol=2e-3)
 
@@ -181,7 +181,8 @@ def test_mean_gaps_are_the_distances_of_mean_places(changes):
 def test_the_slope_of_quadratic_springs_is_the_mean_over_their_fluctuations():
     """2 K <|x + u|>, by sampling u with the variance that the slope implies. Mutation: 1.5 K."""
     x, T, gap, spread = np.array([0.0, 1.5]), np.array([0.4, 0.4]), np.array([0.3, 0.3]), 0.05
-    k = mean_slope(0.8, x, T, gap, np.full(2, spread))
+    medium = Medium.of(Chain())._replace(stiffness=0.8, exponent=3)
+    k = mean_slope(medium, x, T, gap, np.full(2, spread))
     local = T / np.sqrt(k**2 + 4 * k * T / gap**2)
     u = np.random.default_rng(1).normal(size=(400_000, 2)) * np.sqrt(local + spread)
     sampled = 2 * 0.8 * np.abs(x + u)
@@ -198,7 +199,7 @@ def test_correlations_cool_a_gas(theory):
 def test_cells_of_several_rods_change_little(changes):
     chain = Chain(size=40, restitution=0.75, **changes)
     fine, coarse = (
-        rods_of(chain, agreement.in_agreement(chain, make_cells(40, most, whole=True)))
+        rods_of(chain, agreement.in_agreement(chain, make_cells(40, most, walled=chain.box > 0)))
         for most in (40, 25)
     )
     width = np.sqrt(fine.velocity_variance)
@@ -207,7 +208,7 @@ def test_cells_of_several_rods_change_little(changes):
 
 
 def test_no_agreement_is_an_error_with_a_reason(monkeypatch):
-    monkeypatch.setattr(agreement, "_MOST_ITERATIONS", 2)
+    monkeypatch.setattr(fixed_point, "_MOST_ITERATIONS", 2)
     with pytest.raises(ValueError, match=r"no steady state that could be.*after 2 iterations"):
         steady_state(Chain(size=8, restitution=0.75))
 
