@@ -200,7 +200,7 @@ def restore(owner: Any, name: str, value: NDArray[Any]) -> None:
 
 
 def _aligned(values: Array) -> Array:
-    """Return a copy that begins with a line of the cache: others slow short chains by up to a third."""
+    """Return a copy that begins with a line of the cache; others slow a short chain by a third."""
     room = np.empty(values.size + _LINE - 1)
     first = -room.ctypes.data // room.itemsize % _LINE
     copy = room[first : first + values.size]
