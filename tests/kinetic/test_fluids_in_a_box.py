@@ -193,10 +193,10 @@ def test_a_gas_at_rest_stays_and_comes_back_to_rest_on_springs():
     for frame in ("label", "eulerian"):
         rest = hydrodynamics(chain, force_balance(chain), 10.0, frame=frame, progress=False)
         assert rest.residual < 0.02
-        quench = hydrodynamics(chain, hot, 50.0, every=50.0, frame=frame, progress=False)
+        quench = hydrodynamics(chain, hot, 40.0, every=40.0, frame=frame, progress=False)
         np.testing.assert_allclose(quench.rods, 20, rtol=1e-12)
         off = quench.mean_displacement[-1] - force_balance(chain).mean_displacement
-        assert np.abs(off).max() < 4e-3
+        assert np.abs(off).max() < 0.01
 
 
 @pytest.mark.compiled

@@ -76,7 +76,7 @@ def test_a_shift_swings_as_one_oscillator(frame):
     [
         (10, 30, 0.0, "linear"),
         (100, 1, 0.2, "linear"),
-        pytest.param(500, 10, 0.0, "linear", marks=pytest.mark.validate),
+        pytest.param(300, 10, 0.0, "linear", marks=pytest.mark.validate),
         (100, 10, 0.2, "quadratic"),
     ],
 )

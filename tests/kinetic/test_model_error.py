@@ -81,7 +81,7 @@ def test_what_was_not_measured_is_unknown(changes):
 
 
 def test_results_state_the_errors_of_all_quantities_and_warn_of_unknown_ones():
-    chain = Chain(size=30, restitution=0.9)
+    chain = Chain(size=10, restitution=0.9)
     names = [f"{quantity}_model_error" for quantity in QUANTITIES]
     found = [steady_state(chain).attrs[each] for each in names]
     np.testing.assert_array_equal(found, stated(chain))

@@ -72,7 +72,7 @@ flow(moved.assign(flow_velocity=moved.flow_velocity * np.nan)) | flow_velocity
 flow(moved.assign(velocity_variance=-moved.velocity_variance)) | positive
 flow(moved.drop_vars("x")) | no coordinate 'x'
 flow(moved.astype(str)) | must be numbers
-flow(displaced(many, 1.0), many, 1.0, every=1e-6) | would take ... GiB of memory
+flow(displaced(dense, 1.0), dense, 1.0, every=1e-6) | would take ... GiB of memory
 flow(displaced(wide, 0.5), wide, frame="eulerian", cells=100) | wide, 0.5 at most ...give cells=613
 flow(displaced(dense, 0.5), dense, frame="eulerian") | wide, 0.5 at most ...use frame='label'
 flow(compressed(twenty, 5e-4), twenty, duration=1) | too steep
@@ -137,7 +137,6 @@ def names():
         "thirty": Chain(size=30, restitution=0.9),
         "wide": Chain(size=100),
         "dense": Chain(size=20_000),
-        "many": Chain(size=10**6),
         "moved": moved,
         "inward": narrow.assign(flow_velocity=speed),
         "flow": flow,

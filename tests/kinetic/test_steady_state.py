@@ -28,8 +28,8 @@ KINDS = {
     "gap": Chain(size=20, restitution=0.5, gap=0.5),
     "quadratic": Chain(size=16, restitution=0.5, spring="quadratic"),
     "box": Chain(size=10, restitution=0.8, box=21),
-    "quadratic box": Chain(size=10, restitution=0.8, box=21, spring="quadratic"),
-    "gas": gas(12, 0.5, 0.1),
+    "quadratic box": Chain(size=8, restitution=0.8, box=17, spring="quadratic"),
+    "gas": gas(9, 0.5, 0.1),
     "inelastic walls": gas(10, 0.85, 0.1, 0.5),
 }
 
@@ -54,7 +54,7 @@ ELASTIC = [
     Chain(size=20, box=60, stiffness=0),
     *(Chain(size=20, gap=gap) for gap in (0.3, 2.0)),  # mutation: phi = 1 with a gap
     Chain(size=20, gap=0.3, box=80),
-    pytest.param(Chain(size=150), marks=pytest.mark.validate),
+    pytest.param(Chain(size=80), marks=pytest.mark.validate),
 ]
 
 
