@@ -52,7 +52,7 @@ def find_fixed_point(
                 "jac_options": {"alpha": _MIXED, "M": _KEPT},
             },
         ).success
-    except NoSteadyStateError:
+    except ValueError:  # also of arrays that are not finite
         if not found:
             raise
         agreed = False  # a step to where there is no image
