@@ -20,6 +20,7 @@ steady_state(Chain(size=10**6)) | size must be at most 100000, got 1000000
 steady_state(Chain(size=160, restitution=1.05, damping=4.0)) | could be found: collisions give more
 steady_state(Chain(size=95, restitution=1.2, damping=12.5)) | too heavy for the grid
 steady_state(thirty.replace(restitution=1.3)) | no steady state
+steady_state(thirty.replace(restitution=1e60)) | a restitution of at most 1e+06, got 1e+60
 critical_size(Chain(restitution=1.0)) | every size has a steady state
 critical_size(Chain(restitution=1.05, spring="quadratic")) | quadratic
 critical_size(Chain(restitution=1.05, damping=0)) | damping=0
