@@ -5,6 +5,6 @@
 const ChainCurves = {
   widths: [
     {"size":20,"restitution":0.9,"damping":0.3,"gap":0.5,"title":"gas","error":null,"border":null,"half":[0.781,0.762,0.752,0.742,0.734,0.729,0.725,0.722,0.72,0.72]},
-    {"size":20,"restitution":0.9,"damping":1.0,"gap":0.0,"title":"gas","error":0.0258,"border":0.0285,"half":[0.785,0.747,0.72,0.699,0.683,0.67,0.661,0.654,0.649,0.647]},
+    {"size":20,"restitution":0.9,"damping":1.0,"gap":0.0,"title":"gas","error":0.0258,"border":0.0285,"half":[0.786,0.748,0.72,0.699,0.683,0.671,0.661,0.654,0.649,0.647]},
   ],
 };
