@@ -26,8 +26,8 @@ export PYTHONDONTWRITEBYTECODE :=
 
 help:
 	@echo "make run        compare simulation and theory at e = 1; figures into $(OUTPUT)/"
-	@echo "make test       run the tests that are quick (4 min)"
-	@echo "make validate   run the others: statistics, long runs, kills, wheel, the page in a browser (4 min)"
+	@echo "make test       run the tests that are quick (2 min)"
+	@echo "make validate   run the others: statistics, long runs, kills, wheel, the page in a browser (3 min)"
 	@echo "make cluster    run that of sweeps on a dask cluster (1 min)"
 	@echo "make test-lowest  run the tests with the oldest allowed version of every package"
 	@echo "make torture    test kills, full disks, bad input and long runs (15 min; docs/reliability.md)"

@@ -17,7 +17,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
-from exploration import (
+from exploration import (  # noqa: F401 (two are fixtures of every test)
     ANY,
     ELASTIC,
     NEAR_ONE,
@@ -25,8 +25,10 @@ from exploration import (
     SIZES,
     arguments,
     chains,
+    compiled,
     explored,
     interrupted_when_long,
+    limits,
     outcome,
     require_sound,
 )
