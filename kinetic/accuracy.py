@@ -213,5 +213,6 @@ def _around(quantity: str, place: Mapping[str, float]) -> float:
 
 @cache
 def _table(name: str) -> pd.DataFrame:
-    with (files("crazybilliards.kinetic") / "measured" / f"{name}.csv").open() as file:
+    path = files("crazybilliards.kinetic") / "measured" / f"{name}.csv"
+    with path.open(encoding="utf-8") as file:
         return pd.read_csv(file)

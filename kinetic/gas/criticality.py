@@ -15,9 +15,8 @@ The rate above vanishes at a size that is smaller by the factor 2/(1 + e).
 
 **Any damping.** The kinetic equation of first order in e - 1, solved for gamma/sqrt(k m) from 1e-3
 to 3.5, has no steady state from a size on that differs from L_c by 0.01 % up to 0.5 and by 1.2 % at
-3. In simulations rods that happen to be close together pass their pushes back and forth: four
-critical sizes up to gamma/sqrt(k m) = 1.95 and e = 1.1 were found within 7 % of L_c, 9 % with two
-standard errors (``studies/critical_size.py``).
+3. Four critical sizes that were simulated, up to gamma/sqrt(k m) = 1.95 and e = 1.1, lie within 7 %
+of L_c, 9 % with two standard errors (``studies/critical_size.py``).
 """
 
 from __future__ import annotations

@@ -90,7 +90,7 @@ def steady_state(chain: Chain, *, correlations: bool = True) -> xr.Dataset:
 
     Notes
     -----
-    It takes 0.1 s for 30 rods, half a second for 100, and up to 10 s for more than 200.
+    It takes 0.1 s for 30 rods, half a second to two for 100, and up to 10 s for more than 200.
 
     Examples
     --------
