@@ -55,7 +55,7 @@ class Cells(NamedTuple):
 
     def sides(self, at_contacts: Array) -> tuple[Array, Array]:
         """Return what all contacts have left and right of each cell, 0 beyond open ends."""
-        values = at_contacts if self.walled else np.pad(at_contacts, 1)
+        values = at_contacts if self.walled else np.concatenate([[0.0], at_contacts, [0.0]])
         return values[:-1], values[1:]
 
 

@@ -109,10 +109,10 @@ def balanced(medium: Medium, cells: Cells, y: Array, stress: Array, spread: Arra
 
     ``stress``: P g = phi T at all contacts. ``spread``: h_uu at the cells.
     """
-    pressure = stress * cells.all_distances
+    pressure, anchors, last = stress * cells.all_distances, medium.anchors(cells), np.inf
     for _ in range(_MOST_STEPS):
         room = _steps(y, medium.wall)
-        F, slope = mean_force(medium, y - medium.anchors(cells), spread)
+        F, slope = mean_force(medium, y - anchors, spread)
         P = pressure / room
         left, right = cells.sides(P)
         off = left - right - cells.rods * F
@@ -122,8 +122,11 @@ def balanced(medium: Medium, cells: Cells, y: Array, stress: Array, spread: Arra
         closing = change < 0
         share = min(1.0, float((-_CLOSER * room[closing] / change[closing]).min(initial=1.0)))
         y = y + share * step
-        if share == 1 and np.abs(change / room).max() < 1e-11:
+        largest = float(np.abs(change / room).max())
+        # Gaps at walls are so small that rounding may stay above the first limit.
+        if share == 1 and (largest < 1e-11 or last <= largest < 1e-6):
             break
+        last = largest
     room = _steps(y, medium.wall)
     return Balance(y, room / cells.all_distances, pressure / room)
 
@@ -192,10 +195,11 @@ def conductance(medium: Medium, cells: Cells, T: Array, P: Array, strength: Arra
 
 def _solve_banded(diagonal: Array, beside: Array, right: Array) -> Array:
     """Solve a symmetric tridiagonal system."""
-    bands = np.array([np.pad(beside, (1, 0)), diagonal, np.pad(beside, (0, 1))])
+    bands = np.zeros((3, diagonal.size))
+    bands[0, 1:], bands[1], bands[2, :-1] = beside, diagonal, beside
     return np.asarray(solve_banded((1, 1), bands, right))
 
 
 def _steps(y: Array, wall: float) -> Array:
     """Return the differences of neighbouring places, to walls at -wall and wall as well."""
-    return np.diff(np.pad(y, 1, constant_values=(-wall, wall)) if np.isfinite(wall) else y)
+    return np.diff(np.concatenate([[-wall], y, [wall]]) if np.isfinite(wall) else y)
