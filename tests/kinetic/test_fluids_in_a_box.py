@@ -179,7 +179,7 @@ def test_heat_relaxes_with_the_mean_of_the_inverse_masses():
     hot["velocity_variance"] *= 2
     for frame in ("label", "eulerian"):
         flow = hydrodynamics(
-            chain, hot, 2.0, velocity_variance="evolving", frame=frame, progress=False
+            chain, hot, 2.0, velocity_variance="evolving", every=0.5, frame=frame, progress=False
         )
         inside = flow.velocity_variance.sel(x=slice(-20, 20)).mean("x")
         rate = 2 * slow * (1 / chain.rod_masses).mean()
@@ -190,10 +190,11 @@ def test_heat_relaxes_with_the_mean_of_the_inverse_masses():
 def test_a_gas_at_rest_stays_and_comes_back_to_rest_on_springs():
     chain = in_a_box(10.0, gap=0.3)
     hot = force_balance(chain.replace(amplitude=8))
-    for frame in ("label", "eulerian"):
-        rest = hydrodynamics(chain, force_balance(chain), 10.0, frame=frame, progress=False)
+    for frame, cells in (("label", 50), ("eulerian", None)):
+        how = {"frame": frame, "cells": cells, "progress": False}
+        rest = hydrodynamics(chain, force_balance(chain), 10.0, every=10.0, **how)
         assert rest.residual < 0.02
-        quench = hydrodynamics(chain, hot, 40.0, every=40.0, frame=frame, progress=False)
+        quench = hydrodynamics(chain, hot, 40.0, every=40.0, **how)
         np.testing.assert_allclose(quench.rods, 20, rtol=1e-12)
         off = quench.mean_displacement[-1] - force_balance(chain).mean_displacement
         assert np.abs(off).max() < 0.01
@@ -207,17 +208,18 @@ def test_a_fluid_of_equal_rods_says_how_wrong_it_is():
     for moments, least, most in ((2, 0.7, 0.8), (3, 0.5, 0.6), (4, 0.35, 0.4)):
         assert least <= wave_model_error(slow, 7 / k, moments=moments) <= most
     assert wave_model_error(gas(10 * k), 7 / k, moments=2) < 0.02
-    evolving = {"velocity_variance": "evolving", "progress": False}
+    wave, evolving = waved(slow, 0.02), {"velocity_variance": "evolving", "progress": False}
     for frame, moments in (("label", 4), ("eulerian", 3)):
         with pytest.warns(UserWarning, match="are no fluid"):
-            flow = hydrodynamics(slow, waved(slow, 0.02), 3 / k, frame=frame, **evolving)
+            flow = hydrodynamics(slow, wave, 3 / k, every=3 / k, frame=frame, **evolving)
         error = wave_model_error(slow, 3 / k, moments=moments)
         assert flow.attrs["wave_model_error"] == pytest.approx(error)
     # At strong damping nothing is warned of, nor with two masses.
-    flow = hydrodynamics(gas(10 * k), waved(gas(10 * k), 0.02), 1.0, progress=False)
+    once = {"duration": 1.0, "every": 1.0, "progress": False}
+    flow = hydrodynamics(gas(10 * k), waved(gas(10 * k), 0.02), **once)
     assert flow.attrs["wave_model_error"] < 0.02
     two = gas(0.2 * k, mass_ratio=3.0)
-    assert "wave_model_error" not in hydrodynamics(two, waved(two, 0.02), 1.0, progress=False).attrs
+    assert "wave_model_error" not in hydrodynamics(two, waved(two, 0.02), **once).attrs
 
 
 def test_with_a_gap_on_springs_the_error_of_a_fluid_in_a_box_is_not_known():

@@ -84,14 +84,6 @@ def test_a_lattice_that_ends_where_the_mesh_changes_is_solved():
         assert force_balance(chain.replace(gap=0.1 * chain.thermal_length)).residual < 1e-6
 
 
-def test_a_wide_gap_has_a_plateau_of_one_rod_per_lattice_cell():
-    chain = Chain(size=1000, gap=1.0, amplitude=0.3)
-    theory = force_balance(chain)
-    middle = np.abs(theory.x.values) < 1000
-    np.testing.assert_allclose(theory.density.values[middle], 1 / 3, rtol=1e-9)
-    np.testing.assert_allclose(theory.displacement.values[middle], 0, atol=1e-9)
-
-
 @pytest.mark.parametrize("amplitude", [1.0, 100.0])
 def test_the_arctanh_closure_is_a_wright_omega_function(amplitude):
     """Ln rho_y + 2R rho_y + Psi/s^2 is constant, Psi the integral of B arctanh(C x)."""

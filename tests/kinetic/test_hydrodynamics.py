@@ -75,9 +75,8 @@ def test_a_shift_swings_as_one_oscillator(frame):
     ("size", "amplitude", "gap", "spring"),
     [
         (10, 30, 0.0, "linear"),
-        (100, 1, 0.2, "linear"),
-        pytest.param(300, 10, 0.0, "linear", marks=pytest.mark.validate),
-        (100, 10, 0.2, "quadratic"),
+        (40, 1, 0.2, "linear"),
+        (40, 10, 0.2, "quadratic"),
     ],
 )
 def test_relaxation_ends_in_the_force_balance(size, amplitude, gap, spring):
@@ -85,7 +84,7 @@ def test_relaxation_ends_in_the_force_balance(size, amplitude, gap, spring):
     # Quadratic springs are soft near their anchors: a plateau takes ages to relax.
     hotter = 1.5 if spring == "linear" else 1.0
     start = force_balance(chain.replace(amplitude=hotter * amplitude))
-    flow = hydrodynamics(chain, start, 100, every=100, velocity_variance="evolving", **QUIET)
+    flow = hydrodynamics(chain, start, 75, every=75, velocity_variance="evolving", **QUIET)
     theory = force_balance(chain)
     difference = np.abs(density_on(flow, theory.x)[-1] - theory.density.values).max()
     assert difference / chain.close_packed_density < 1e-4
@@ -194,7 +193,7 @@ def shock_tube(chain):
 def test_a_shock_does_not_depend_on_a_very_soft_spring():
     """The cells resolve the rods and the waves, which are short against the thermal length."""
     damping = 1e-4
-    chain = Chain(size=200, radius=0.5, mass=1.0, stiffness=1e-6, damping=damping)
+    chain = Chain(size=60, radius=0.5, mass=1.0, stiffness=1e-5, damping=damping)
     chain = chain.replace(amplitude=np.sqrt(2 * damping))
     flow = hydrodynamics(
         chain, shock_tube(chain), 10, every=10, velocity_variance=1.0, frame="eulerian", **QUIET
@@ -280,12 +279,3 @@ def test_the_first_steps_resolve_what_the_springs_draw(monkeypatch):
     assert len(calls) == 1
     exact = hydrodynamics(chain, displaced(chain, 25.0), 2.0, every=1.0, **QUIET)
     np.testing.assert_allclose(flow.centre, exact.centre, atol=0.02 * 25)
-
-
-def test_a_plain_density_profile_is_a_start():
-    """Any profile of the user: no label, no velocity, no provenance."""
-    chain = Chain(size=20, amplitude=5)
-    own = displaced(chain, 3.0)[["density"]].drop_attrs()
-    flow = hydrodynamics(chain, own, 5, every=1, **QUIET)
-    reference = hydrodynamics(chain, displaced(chain, 3.0), 5, every=1, **QUIET)
-    np.testing.assert_allclose(flow.centre, reference.centre, atol=1e-3)

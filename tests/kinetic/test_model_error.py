@@ -47,10 +47,10 @@ def stated(chain):
 
 
 def test_a_measured_chain_states_no_less_than_its_row():
-    """Every second one: neighbours are alike."""
+    """Every fourth one: neighbours are alike."""
     measured = rows("kinetic/measured/steady_state.csv")
     assert len(measured) > 300
-    for row in measured[::2]:
+    for row in measured[::4]:
         found = stated(chain_of_row(row))._asdict()
         for name in QUANTITIES:
             assert not row[name] or found[name] >= float(row[name]), (row, name)
@@ -116,9 +116,9 @@ def test_the_force_balance_states_its_density_and_its_displacements():
         assert np.isnan(force_balance(Chain(size=size)).attrs["density_model_error"])
 
 
-@pytest.mark.parametrize(("size", "gap"), [(3, 0.2), (30, 0.0), (30, 2.0), (100, 0.2)])
+@pytest.mark.parametrize(("size", "gap"), [(3, 0.2), (30, 0.0), (30, 2.0), (60, 0.2)])
 def test_the_errors_of_the_force_balance_are_those_from_the_exact_solution(size, gap):
-    for amplitude in (1.0, 4.0, 10.0, 40.0):
+    for amplitude in (1.0, 10.0):
         chain = Chain(size=size, amplitude=amplitude)
         chain = chain.replace(gap=gap * chain.thermal_length)
         found, exact = force_balance(chain), equilibrium(chain)

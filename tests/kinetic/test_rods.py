@@ -131,7 +131,7 @@ def test_more_rods_than_anybody_resolves_stay_a_fluid(monkeypatch):
 @pytest.mark.parametrize("gap", [0.3, 0.0])
 def test_rods_of_the_steady_state_are_those_of_a_simulation(gap):
     chain = Chain(size=20, restitution=0.65, gap=gap)
-    run = simulate(chain, duration=20_000, observe=("widths", "density"), progress=False, seed=3)
+    run = simulate(chain, duration=10_000, observe=("widths", "density"), progress=False, seed=3)
     theory = steady_state(chain)
     assert deviation(smooth(run), smooth(theory)).maximum < 0.03
     off = np.abs(theory.displacement_width / run.displacement_width - 1)

@@ -54,7 +54,6 @@ ELASTIC = [
     Chain(size=20, box=60, stiffness=0),
     *(Chain(size=20, gap=gap) for gap in (0.3, 2.0)),  # mutation: phi = 1 with a gap
     Chain(size=20, gap=0.3, box=80),
-    pytest.param(Chain(size=80), marks=pytest.mark.validate),
 ]
 
 
@@ -195,12 +194,12 @@ def test_correlations_cool_a_gas(theory):
     assert float((field / theory("gas").velocity_width).mean()) > 1.05
 
 
-@pytest.mark.parametrize("changes", [{"gap": 0.3}, {"box": 90}])
+@pytest.mark.parametrize("changes", [{"gap": 0.3}, {"box": 54}])
 def test_cells_of_several_rods_change_little(changes):
-    chain = Chain(size=40, restitution=0.75, **changes)
+    chain = Chain(size=24, restitution=0.75, **changes)
     fine, coarse = (
-        rods_of(chain, agreement.in_agreement(chain, make_cells(40, most, walled=chain.box > 0)))
-        for most in (40, 25)
+        rods_of(chain, agreement.in_agreement(chain, make_cells(24, most, walled=chain.box > 0)))
+        for most in (24, 15)
     )
     width = np.sqrt(fine.velocity_variance)
     np.testing.assert_allclose(np.sqrt(coarse.velocity_variance), width, rtol=0.01)
