@@ -179,7 +179,8 @@ def test_the_error_is_that_of_the_chain_and_the_start():
 
     def found(**changes):
         chain, start = chain_and_start(**changes)
-        return hydrodynamics(chain, start, 0.1, **EVOLVING).attrs["kinetic_energy_model_error"]
+        flow = hydrodynamics(chain, start, 0.1, every=0.1, **EVOLVING)
+        return flow.attrs["kinetic_energy_model_error"]
 
     assert found() == pytest.approx(stated_in_time(0.9, 0.0, 1.0))
     assert found(start=displaced, by=1.0) == found()
