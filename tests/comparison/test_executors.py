@@ -9,11 +9,11 @@ import psutil
 import pytest
 from forked import until
 
-from crazybilliards.comparison.sweeps import Case, process_pool, run_cases
+from crazybilliards.comparison.sweeps import Case, process_pool, processes, run_cases
 from crazybilliards.model import Chain
 
 QUIET = {"progress": False}
-CASES = [Case("simulate", Chain(size=20), {"duration": 10_000, "seed": seed}) for seed in range(4)]
+CASES = [Case("simulate", Chain(size=20), {"duration": 5_000, "seed": seed}) for seed in range(4)]
 pytestmark = pytest.mark.compiled
 
 
@@ -36,12 +36,6 @@ def test_threads_give_the_same_results(here, tmp_path):
     require_alike(tmp_path, here)
 
 
-@pytest.fixture(scope="module")
-def pool():
-    with process_pool(1) as pool:
-        yield pool
-
-
 def killer(folder, process):
     """Return a thread that kills a process as soon as a first result is there."""
 
@@ -52,28 +46,28 @@ def killer(folder, process):
     return threading.Thread(target=kill)
 
 
-def test_a_process_killed_in_the_middle_costs_nothing(pool, here, tmp_path):
-    process = psutil.Process(pool.submit(os.getpid).result())
-    killing = killer(tmp_path, process)
-    killing.start()
-    assert run_cases(CASES, tmp_path, pool, **QUIET) == {}
-    killing.join()
-    assert pool.submit(os.getpid).result() != process.pid
+def test_a_process_killed_in_the_middle_costs_nothing(here, tmp_path):
+    with process_pool(1) as pool:
+        process = psutil.Process(pool.submit(os.getpid).result())
+        killing = killer(tmp_path, process)
+        killing.start()
+        assert run_cases(CASES, tmp_path, pool, **QUIET) == {}
+        killing.join()
+        assert pool.submit(os.getpid).result() != process.pid
     require_alike(tmp_path, here)
 
 
-def die(size):
-    if size == 3:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return size
-
-
 @pytest.mark.posix
-def test_what_kills_its_process_twice_has_failed_and_costs_nothing_else(pool):
-    futures = [pool.submit(die, size) for size in range(6)]
-    with pytest.raises(RuntimeError, match="its process died, and so did the next one"):
-        futures.pop(3).result()
-    assert [future.result() for future in futures] == [0, 1, 2, 4, 5]
+def test_what_kills_its_process_twice_has_failed_and_costs_nothing_else(monkeypatch):
+    """In processes that import nothing, which takes seconds each."""
+    monkeypatch.setattr(processes, "_prepare_process", None)
+    with process_pool(1) as pool:
+        before, deadly, after = (
+            pool.submit(*call) for call in [(abs, -1), (signal.raise_signal, 9), (abs, -2)]
+        )
+        with pytest.raises(RuntimeError, match="its process died, and so did the next one"):
+            deadly.result()
+        assert (before.result(), after.result()) == (1, 2)
 
 
 @pytest.mark.cluster
