@@ -22,8 +22,8 @@ from crazybilliards.particles import simulate
 from crazybilliards.particles.start import given_start
 
 CHAIN = Chain(size=3)
-RUN = {"duration": 100.0, "warmup": 1.0, "progress": False}
-CASE = Case("simulate", CHAIN, {"duration": 100, "warmup": 1})
+RUN = {"duration": 100.0, "warmup": 1.0, "observe": "widths", "progress": False}
+CASE = Case("simulate", CHAIN, {"duration": 100, "warmup": 1, "observe": "widths"})
 
 
 def read_checkpoint(path):
@@ -158,7 +158,7 @@ READABLE = {
 }
 
 
-@pytest.mark.parametrize("kind", READERS)
+@pytest.mark.parametrize("kind", [kind for kind in READERS if kind != "tree"])  # read as a result
 def test_a_file_of_another_kind_is_refused_and_kept(kind, strangers):
     before = [path.read_bytes() for path in strangers]
     readable = {path.stem for path in strangers if not refused(READERS[kind], path)}
@@ -174,7 +174,7 @@ def test_a_file_of_another_kind_is_refused_and_kept(kind, strangers):
         {"warmup": 2.0},
         {"seed": 5},
         {"replicas": 2},
-        {"observe": "widths"},
+        {"observe": "density"},
         {"particles": [1]},
         {"time_step": 0.09},
         {"every": 0.5},
