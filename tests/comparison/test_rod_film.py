@@ -87,18 +87,18 @@ def test_a_film_has_all_its_pictures(run, kind, tmp_path, monkeypatch):
     if kind == "html without ffmpeg":
         monkeypatch.setattr(films, "has_ffmpeg", lambda: False)
     kind, *without = kind.split()
-    path = film(run, tmp_path / f"rods.{kind}", seconds=0.4, springs=True, progress=False)
+    path = film(run, tmp_path / f"rods.{kind}", seconds=0.2, springs=True, progress=False)
     assert [path] == list(tmp_path.iterdir())
     if kind == "gif":
         with Image.open(path) as pictures:
-            assert pictures.n_frames == 10
+            assert pictures.n_frames == 5
     elif without:
-        assert path.read_text().count("data:image/png;base64") == 10
+        assert path.read_text().count("data:image/png;base64") == 5
     elif kind == "html":
         assert path.read_text().count("data:video/mp4;base64") == 1
     else:
         shown = imageio_ffmpeg.count_frames_and_secs(str(path))
-        assert shown == (10, pytest.approx(0.4, abs=0.01))
+        assert shown == (5, pytest.approx(0.2, abs=0.01))
 
 
 def test_rods_that_are_far_apart_are_seen():
