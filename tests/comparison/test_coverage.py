@@ -1,10 +1,10 @@
-"""The paper's binning against a slow twin that measures every overlap of rod and bin."""
+"""Densities: the paper's binning against a slow twin, and how far two of them are apart."""
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from crazybilliards.comparison import coverage_density, smooth
+from crazybilliards.comparison import coverage_density, deviation, smooth
 from crazybilliards.kinetic import (
     displaced,
     equilibrium,
@@ -13,6 +13,7 @@ from crazybilliards.kinetic import (
     hydrodynamics,
 )
 from crazybilliards.model import Chain
+from crazybilliards.model.vocabulary import result
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Density
 
@@ -58,8 +59,8 @@ def test_no_rod_is_lost(convolve):
         simulate(chain, duration=300, progress=False),
         equilibrium_states(chain, 10),
     ]
-    for result in results:
-        density = convolve(result)
+    for each in results:
+        density = convolve(each)
         rods = float(density.density.sum() * (density.x[1] - density.x[0]))
         assert rods == pytest.approx(9, rel=1e-6)
         assert (density.density >= 0).all()
@@ -121,32 +122,91 @@ def _with_parts():
 
 @pytest.mark.compiled
 def test_a_grid_that_was_cut_or_thinned_is_not_smoothed():
-    for result, rods in _with_parts():
-        _refused_in_part(result, rods)
-
-
-def _refused_in_part(result, rods):
-    whole = smooth(result)
-    if "outside" not in result or result.outside == 0:
-        held = whole.density.sum("x") * (whole.x[1] - whole.x[0])
-        np.testing.assert_allclose(held, rods, rtol=1e-3)
-    end, ways = float(result.x[-1]), [smooth]
-    if "smoothed" not in result.attrs:
-        ways.append(coverage_density)
-    for part in (slice(-9.0, 9.0), slice(-100, 5.0), slice(-3.0, 100)):
+    for each, rods in _with_parts():
+        whole = smooth(each)
+        if "outside" not in each or each.outside == 0:
+            held = whole.density.sum("x") * (whole.x[1] - whole.x[0])
+            np.testing.assert_allclose(held, rods, rtol=1e-3)
+        end, ways = float(each.x[-1]), [smooth]
+        if "smoothed" not in each.attrs:
+            ways.append(coverage_density)
+        for part in (slice(-9.0, 9.0), slice(-100, 5.0), slice(-3.0, 100)):
+            for way in ways:
+                with pytest.raises(
+                    ValueError, match=rf"grid of x holds .* of .* {rods} rods: .*cut what"
+                ):
+                    way(each.sel(x=part))
         for way in ways:
-            with pytest.raises(
-                ValueError, match=rf"grid of x holds .* of .* {rods} rods: .*cut what"
-            ):
-                way(result.sel(x=part))
-    for way in ways:
-        with pytest.raises(ValueError, match="x must be even and ascend"):
-            way(result.isel(x=slice(None, None, -1)))
-        with pytest.raises(ValueError, match="x must have an odd number of nodes"):
-            way(result.isel(x=slice(None, None, 2)))
-        with pytest.raises(ValueError, match="density must be over x"):
-            way(result.isel(x=3))
-    xr.testing.assert_allclose(smooth(result.transpose("x", ...)), whole)
-    if rods == 20 and "outside" not in result:  # where there is nothing
-        less = result.sel(x=slice(-end + 1.0, end - 1.0))
-        xr.testing.assert_allclose(smooth(less).density, whole.density.sel(x=less.x))
+            with pytest.raises(ValueError, match="x must be even and ascend"):
+                way(each.isel(x=slice(None, None, -1)))
+            with pytest.raises(ValueError, match="x must have an odd number of nodes"):
+                way(each.isel(x=slice(None, None, 2)))
+            with pytest.raises(ValueError, match="density must be over x"):
+                way(each.isel(x=3))
+        xr.testing.assert_allclose(smooth(each.transpose("x", ...)), whole)
+        if rods == 20 and "outside" not in each:  # where there is nothing
+            less = each.sel(x=slice(-end + 1.0, end - 1.0))
+            xr.testing.assert_allclose(smooth(less).density, whole.density.sel(x=less.x))
+
+
+# -- deviations --------------------------------------------------------------------------------
+
+
+def flat(chain, height, width, error=None, spacing=0.5):
+    x = spacing * np.arange(-width, width + 1)
+    variables = {"density": ("x", np.full(x.size, height))}
+    if error is not None:
+        variables["density_error"] = ("x", np.full(x.size, error))
+    found = result(chain, variables, source="theory", method={}, coordinates={"x": x})
+    return found.assign_attrs(smoothed="coverage, running average")
+
+
+def test_densities_that_were_cut_are_compared_where_both_are_known():
+    chain = Chain(size=50)
+    one, other = smooth(equilibrium(chain)), smooth(force_balance(chain))
+    whole = deviation(one, other)
+    middle = deviation(one.sel(x=slice(-20, 20)), other.sel(x=slice(-20, 20)))
+    assert 0 < middle.integrated < whole.integrated
+    less = one.sel(x=slice(-20, 20))
+    for end in (19.8, 20.5):  # a hundredth of the rods, which was 0 in one and 1/2 in the other
+        with pytest.raises(ValueError, match="rods; their grids end at other places"):
+            deviation(less, other.sel(x=slice(-20, end)))
+    with pytest.raises(ValueError, match="grids with other nodes"):
+        deviation(one.isel(x=slice(0, None, 3)), other.isel(x=slice(1, None, 3)))
+    with pytest.raises(ValueError, match="even and ascend"):
+        deviation(one.isel(x=slice(None, None, -1)), other)
+    tails = one.sel(x=slice(-56, 56))
+    assert deviation(tails, other).maximum == pytest.approx(whole.maximum)
+
+
+def test_a_transposed_density_deviates_as_before():
+    how = {"duration": 2, "average": "ensemble", "observe": "density", "progress": False}
+    one, other = (smooth(simulate(Chain(size=10), seed=seed, **how)) for seed in (1, 2))
+    assert deviation(one.transpose("x", ...), other) == deviation(one, other)
+
+
+def test_deviation_in_both_units_and_outside_a_grid_where_the_density_is_zero():
+    chain = Chain(size=10)
+    d = deviation(flat(chain, 0.31, 4, error=0.003), flat(chain, 0.3, 4, error=0.004))
+    assert (d.maximum, d.rms, d.integrated) == pytest.approx((0.02, 0.02, 9 * 0.5 * 0.01 / 10))
+    assert (d.maximum_in_errors, d.rms_in_errors) == pytest.approx((2, 2))
+    d = deviation(flat(chain, 0.39, 4), flat(chain, 0.27, 6))  # equally many rods
+    assert d.maximum == pytest.approx(0.54)
+    assert d.integrated == pytest.approx((9 * 0.12 + 4 * 0.27) * 0.5 / 10)
+    assert d.maximum_in_errors is None
+    d = deviation(flat(chain, 0.0, 4), flat(chain, 0.0, 4))
+    assert (d.maximum, d.rms, d.integrated) == (0, 0, 0)
+    exact = equilibrium(chain)
+    assert deviation(exact, exact, raw=True).maximum == 0
+
+
+def test_densities_over_other_times_are_not_compared():
+    chain = Chain(size=10)
+    times = [flat(chain, 0.3, 4).assign_coords(time=t) for t in (0.0, 1.0, 2.0)]
+    one, other = (xr.concat([times[0], each], "time") for each in times[1:])
+    assert deviation(one, one).maximum == 0
+    for reference in (other, times[0]):
+        with pytest.raises(ValueError, match="choose one of each"):
+            deviation(one, reference)
+    with pytest.raises(ValueError, match="different spacing"):
+        deviation(times[0], flat(chain, 0.3, 4, spacing=0.4))
