@@ -135,22 +135,16 @@ def test_a_gas_in_a_box_goes_without_the_fit_and_has_its_pressure(mass_ratio):
         assert figure.get_axes()[0].get_title(loc="left") == "$A = 1$"
 
 
-@pytest.fixture
-def computed(monkeypatch):
-    """Note the amplitudes of the chains that are computed, in this process."""
-    seen = []
+def test_what_the_folder_holds_is_not_computed_again(monkeypatch, tmp_path):
+    """A larger comparison computes what is new; other settings and random numbers are new."""
+    computed = []  # the amplitudes
 
     @wraps(simulate)
     def noted(chain, **settings):
-        seen.append(chain.amplitude)
+        computed.append(chain.amplitude)
         return simulate(chain, **settings)
 
     monkeypatch.setitem(case.JOBS, "simulate", noted)
-    return seen
-
-
-def test_what_the_folder_holds_is_not_computed_again(computed, tmp_path):
-    """A larger comparison computes what is new; other settings and random numbers are new."""
     how = {"folder": tmp_path, "progress": False, "duration": 500}
     first = compare(Chain(size=5), {"amplitude": [1, 2]}, **how)
     assert compare(Chain(size=5), {"amplitude": [1, 2]}, **how).identical(first)

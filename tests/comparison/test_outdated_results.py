@@ -1,7 +1,6 @@
 """Results of other source code are computed anew, and new parameters leave old results valid."""
 
 import json
-import shutil
 import warnings
 from concurrent.futures import Executor
 
@@ -47,19 +46,18 @@ def width(case, folder):
 # -- source code ------------------------------------------------------------------------------
 
 
-def test_a_result_of_other_source_code_is_computed_anew(folder, edited):
+def test_a_result_of_other_source_code_is_kept_on_request_and_otherwise_computed_anew(
+    folder, edited
+):
+    assert missing_cases(CASES, folder, keep_old=True) == []
+    with warnings.catch_warnings(action="error"):
+        assert run_cases(CASES, folder, keep_old=True, **QUIET) == {}
+    assert width(CASES[0], folder) == pytest.approx(1)
     assert missing_cases(CASES, folder) == CASES
     with pytest.warns(UserWarning, match="computing it anew, and others like it .*--keep-old"):
         assert run_cases(CASES, folder, **QUIET) == {}
     assert missing_cases(CASES, folder) == []
     assert [width(each, folder) for each in CASES] == pytest.approx([2, 2])
-
-
-def test_a_result_of_other_source_code_can_be_kept(folder, edited):
-    assert missing_cases(CASES, folder, keep_old=True) == []
-    with warnings.catch_warnings(action="error"):
-        assert run_cases(CASES, folder, keep_old=True, **QUIET) == {}
-    assert width(CASES[0], folder) == pytest.approx(1)
 
 
 @pytest.mark.filterwarnings("ignore:.*computing it anew")
@@ -82,15 +80,14 @@ def test_a_sweep_of_two_source_codes_is_read_with_a_warning(folder, edited):
     assert "source_fingerprint" not in grid.attrs
 
 
-@pytest.mark.parametrize(("name", "changes"), [("gas.py", True), ("page.md", False)])
-def test_an_edit_of_a_room_is_other_source_code(name, changes, tmp_path, monkeypatch):
+def test_an_edit_of_a_room_is_other_source_code(tmp_path, monkeypatch):
     monkeypatch.setattr(fingerprint, "_ROOT", tmp_path)
-    edited = tmp_path / "kinetic" / "gas" / name
-    edited.parent.mkdir(parents=True)
-    edited.write_text("width = 1")
-    before = room_fingerprint.__wrapped__("model", "kinetic")
-    edited.write_text("width = 2")
-    assert (room_fingerprint.__wrapped__("model", "kinetic") != before) is changes
+    folder, prints = tmp_path / "kinetic" / "gas", []
+    folder.mkdir(parents=True)
+    for name, text in (("gas.py", "width = 1"), ("page.md", "a text"), ("gas.py", "width = 2")):
+        (folder / name).write_text(text)
+        prints.append(room_fingerprint.__wrapped__("model", "kinetic"))
+    assert prints[0] == prints[1] != prints[2]
 
 
 # -- parameters -------------------------------------------------------------------------------
@@ -104,8 +101,7 @@ def without(name, path):
     save(result.assign_attrs(case=json.dumps(stored)), path)
 
 
-@pytest.mark.parametrize("name", ["spring", "merging", "mass_ratio"])
-def test_parameters_that_a_file_lacks_are_at_their_defaults(name, tmp_path):
+def test_parameters_that_a_file_lacks_are_at_their_defaults(tmp_path):
     """A parameter of the chain, and a setting of the job."""
     cases = [
         Case("simulate", Chain(size=size), {"duration": 100, "observe": ["widths"]})
@@ -113,9 +109,10 @@ def test_parameters_that_a_file_lacks_are_at_their_defaults(name, tmp_path):
     ]
     assert run_cases(cases, tmp_path, **QUIET) == {}
     before = load_sweep(tmp_path)
-    without(name, cases[0].file(tmp_path))
-    assert missing_cases(cases, tmp_path) == []
-    assert load_sweep(tmp_path).identical(before)
+    for name in ("spring", "merging", "mass_ratio"):
+        without(name, cases[0].file(tmp_path))
+        assert missing_cases(cases, tmp_path) == []
+        assert load_sweep(tmp_path).identical(before)
 
 
 def test_a_file_that_lacks_a_parameter_is_not_that_of_another_value(tmp_path):
@@ -126,16 +123,15 @@ def test_a_file_that_lacks_a_parameter_is_not_that_of_another_value(tmp_path):
         case.load(tmp_path)
 
 
-def test_two_files_of_one_case_are_refused(folder):
-    shutil.copy(CASES[0].file(folder), folder / "copy.nc")
-    with pytest.raises(ValueError, match="two files hold the same case"):
-        load_sweep(folder)
-
-
-def test_parameters_that_only_some_files_have_are_refused(folder):
+def test_two_files_of_one_case_and_a_parameter_that_some_files_have_are_refused(folder):
     path = CASES[0].file(folder)
     result = load(path)
     stored = json.loads(result.attrs["case"]) | {"colour": "red"}
-    save(result.assign_attrs(case=json.dumps(stored)), path)
-    with pytest.raises(ValueError, match="not all cases have the parameter colour"):
-        load_sweep(folder)
+    for file, changed, said in (
+        (folder / "copy.nc", result, "two files hold the same case"),
+        (path, result.assign_attrs(case=json.dumps(stored)), "not all cases have .* colour"),
+    ):
+        save(changed, file)
+        with pytest.raises(ValueError, match=said):
+            load_sweep(folder)
+        file.unlink()

@@ -148,25 +148,21 @@ def test_labels_of_axes_are_set_as_in_print():
 
 
 @pytest.mark.compiled
-def test_velocity_densities_of_a_rod_picked_at_random(pair):
-    """They are the mean over all rods; empty bins are left out."""
-    run = pair["rods"]
-    ax = overlay({"rods": run}, "velocity_density")
-    assert ax.get_xlabel() == "velocity $v$ [$R/t_0$]"
-    assert ax.get_ylabel() == "probability density of $v$ [$t_0/R$]"
-    mean = run.velocity_density.mean("particle").values
-    np.testing.assert_allclose(ax.lines[0].get_ydata(), np.where(mean > 0, mean, np.nan))
-
-
-@pytest.mark.compiled
-def test_velocity_densities_of_one_rod_are_not_mixed_with_those_of_all(pair):
-    run = pair["rods"].isel(particle=3)
-    density = run.velocity_density.values
-    [line] = overlay({"rods": run}, "velocity_density").lines
-    np.testing.assert_array_equal(line.get_ydata(), np.where(density > 0, density, np.nan))
+def test_velocity_densities_are_of_one_rod_or_of_one_picked_at_random(pair):
+    """The latter are the mean over all rods; empty bins are left out."""
+    rods, rod = pair["rods"], pair["rods"].isel(particle=3)
+    for each, density in (
+        (rods, rods.velocity_density.mean("particle").values),
+        (rod, rod.velocity_density.values),
+    ):
+        ax = overlay({"rods": each}, "velocity_density")
+        assert ax.get_xlabel() == "velocity $v$ [$R/t_0$]"
+        assert ax.get_ylabel() == "probability density of $v$ [$t_0/R$]"
+        [line] = ax.lines
+        np.testing.assert_allclose(line.get_ydata(), np.where(density > 0, density, np.nan))
     with pytest.raises(ValueError, match="velocity_density: rod is of one rod, rods of all"):
-        overlay({"rod": run, "rods": pair["rods"]}, "velocity_density")
-    few = pair["rods"].isel(particle=slice(3), contact=slice(3))
+        overlay({"rod": rod, "rods": rods}, "velocity_density")
+    few = rods.isel(particle=slice(3), contact=slice(3))
     with pytest.raises(ValueError, match="over one dimension"):
         overlay({"rods": few}, "velocity_density")
 

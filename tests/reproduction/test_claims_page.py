@@ -18,14 +18,6 @@ from crazybilliards.reproduction.claims.verdicts import EYE, Verdict
 from crazybilliards.reproduction.figures import FIGURES, elastic, find_figures
 
 
-@pytest.fixture
-def short(monkeypatch):
-    """Make the runs of figures 16 and 17 short, and compute them in this process."""
-    monkeypatch.setattr(sweeps, "process_pool", lambda *_: nullcontext(AtOnce()))
-    for runs in elastic._RUNS.values():
-        monkeypatch.setitem(runs.effort, "quick", (1, {"duration": 5000.0}))
-
-
 def test_figures_are_in_order_and_found_by_number_name_or_group():
     assert [figure.number for figure in FIGURES] == list(range(1, 20))
     assert len({figure.name for figure in FIGURES} | {"all", "analytics"}) == len(FIGURES) + 2
@@ -68,7 +60,11 @@ def require_a_row_with_the_verdicts_of_each_part(page):
 
 
 @pytest.mark.compiled
-def test_figures_their_claims_and_the_page(run, tmp_path, monkeypatch, short):
+def test_figures_their_claims_and_the_page(run, tmp_path, monkeypatch):
+    """With short runs of figures 16 and 17, in this process."""
+    monkeypatch.setattr(sweeps, "process_pool", lambda *_: nullcontext(AtOnce()))
+    for runs in elastic._RUNS.values():
+        monkeypatch.setitem(runs.effort, "quick", (1, {"duration": 5000.0}))
     monkeypatch.chdir(tmp_path)
     status, facts, errors = run("reproduce", "16", "--vector", "svg", "--processes", "1", "--json")
     assert status == 0, errors
