@@ -48,8 +48,12 @@ found = wrong;
 """
 
 
-def run(script, runs):
-    """Return what a script finds with the page's own files, without a browser."""
+@pytest.mark.parametrize(("script", "runs"), [(EQUAL, 300), (GASES, 200)])
+def test_fewer_than_one_verdict_in_a_hundred_is_wrong(script, runs):
+    """With the page's own files, without a browser.
+
+    Were one in a hundred wrong, half of the runs' expected number would be rare.
+    """
     order = ("scales", "physics", "gas", "measuring", "drawing", "judging")
     texts = [(PAGE / f"{name}.js").read_text(encoding="utf-8") for name in order]
     scripts = "".join(text.replace('"use strict";', "") for text in texts)
@@ -58,10 +62,4 @@ def run(script, runs):
     done = subprocess.run(
         ["node"], input=whole, capture_output=True, text=True, check=True, timeout=500
     )
-    return json.loads(done.stdout)
-
-
-@pytest.mark.parametrize(("script", "runs"), [(EQUAL, 300), (GASES, 200)])
-def test_fewer_than_one_verdict_in_a_hundred_is_wrong(script, runs):
-    """Were one in a hundred wrong, half of the runs' expected number would be rare."""
-    assert run(script, runs) <= 0.01 * runs
+    assert json.loads(done.stdout) <= 0.01 * runs
