@@ -4,14 +4,11 @@ A hook in every Python process, workers included, takes down each connection, da
 of a name that goes beyond the loopback address, and refuses it.
 """
 
-import json
-import os
 import re
-import signal
-import subprocess
 import sys
 
 import pytest
+from installation import run
 
 # Python imports this by itself at every start. Addresses: a name or (name or address, port, ...).
 GUARD = """
@@ -56,51 +53,22 @@ for room in ("model", "particles", "kinetic", "comparison", "reproduction", "app
         importlib.import_module(info.name)
 import crazybilliards as cb
 chain = cb.Chain(size=10)
-cb.load(cb.save(cb.simulate(chain, duration=100.0), "run.nc"))
+cb.load(cb.save(cb.simulate(chain, duration=100.0), "o/run.nc"))
 cb.equilibrium(chain), cb.force_balance(chain)
 cb.steady_state(chain.replace(restitution=0.95))
 """
-
-
-@pytest.fixture
-def guarded(tmp_path):
-    """Return a function that runs Python in a folder, and afterwards see that nothing was asked."""
-    site, log, folder = tmp_path / "site", tmp_path / "log", tmp_path / "work"
-    site.mkdir()
-    folder.mkdir()
-    (site / "sitecustomize.py").write_text(GUARD)
-    log.touch()
-    environment = {**os.environ, "PYTHONPATH": str(site), "NETWORK_LOG": str(log)}
-
-    def start(*arguments, **options):
-        command = [sys.executable, *arguments]
-        return subprocess.Popen(command, cwd=folder, env=environment, text=True, **options)
-
-    start.log, start.folder = log, folder
-    yield start
-    assert log.read_text() == ""
-
-
-def run(start, *arguments):
-    process = start(*arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    output, errors = process.communicate(timeout=600)
-    assert process.returncode == 0, errors
-    return output
-
-
-def test_the_guard_refuses_what_is_asked(guarded):
-    attempt = "import socket; socket.create_connection(('192.0.2.1', 80), 5)"
-    done = guarded("-c", attempt, stderr=subprocess.PIPE)
-    assert "OSError: no network" in done.communicate(timeout=600)[1]
-    assert guarded.log.read_text().startswith("socket.getaddrinfo 192.0.2.1")
-    guarded.log.write_text("")
-
-
-def test_every_module_and_the_python_interface(guarded):
-    run(guarded, "-c", PYTHON)
-    assert (guarded.folder / "run.nc").exists()
-
-
+PAGE = f"""
+import signal, subprocess, sys
+from urllib.request import ProxyHandler, build_opener
+script = "import sys; sys.argv[1:] = ['explore', '--no-browser', '--port', '0']; {MAIN}"
+page = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+address = page.stdout.readline().split()[0]
+answer = build_opener(ProxyHandler({{}})).open(address, timeout=600).read().decode()
+page.send_signal(signal.SIGINT)
+assert page.wait(600) == -signal.SIGINT
+assert '_static/controls.js' in answer
+open('o/page.html', 'w').write(answer)
+"""
 COMMANDS = """
 compare --size 10 --duration 1000 --amplitude 1,5
 theory --size 10 --restitution 0.95
@@ -108,34 +76,45 @@ relax --size 10 --duration 4 --replicas 8 --film
 reproduce arctanh --processes 2
 sweep grid.toml --processes 2
 """
+LINES = [f"{line} --output o".split() for line in COMMANDS.strip().splitlines()]
+CALLS = {line[0]: (MAIN, *line) for line in LINES}
+CALLS |= {"every module": (PYTHON,), "explore": (PAGE,)}
 
 
-@pytest.mark.parametrize("line", COMMANDS.strip().splitlines())
-def test_every_command(guarded, line):
-    (guarded.folder / "grid.toml").write_text(SWEEP)
-    run(guarded, "-c", MAIN, *line.split(), "--output", "o")
-    assert list((guarded.folder / "o").rglob("*.*"))
-    for page in guarded.folder.rglob("*.html"):
+@pytest.fixture
+def guarded(tmp_path, monkeypatch):
+    """Return what runs a script in a folder, and tells what it asked of the network."""
+    (tmp_path / "sitecustomize.py").write_text(GUARD)
+    log = tmp_path / "log"
+    log.touch()
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setenv("NETWORK_LOG", str(log))
+
+    def guarded(*words):
+        run(sys.executable, "-c", *words, cwd=tmp_path)
+        return log.read_text()
+
+    return guarded
+
+
+def test_the_guard_refuses_what_is_asked(guarded):
+    attempt = "with suppress(OSError): socket.create_connection(('192.0.2.1', 80), 5)"
+    asked = guarded(f"import socket; from contextlib import suppress\n{attempt}")
+    assert asked.startswith("socket.getaddrinfo 192.0.2.1")
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_nothing_is_asked_of_the_network(name, guarded, tmp_path):
+    """Nor by a browser that shows what was written."""
+    results = tmp_path / "o"
+    results.mkdir()
+    (tmp_path / "grid.toml").write_text(SWEEP)
+    assert guarded(*CALLS[name]) == ""
+    assert list(results.rglob("*.*"))
+    for page in results.rglob("*.html"):
         assert loaded(page.read_text()) == []
 
 
 def loaded(page):
     """Return the addresses on other hosts that a browser loads of a page by itself."""
     return re.findall(r"""\w+://[^\s"'`)<]+|["'(=]//\w[^\s"'`)]+""", page)
-
-
-def test_the_page_loads_from_its_own_server(guarded):
-    script = f"import sys; sys.argv[1:] = ['explore', '--no-browser', '--port', '0']; {MAIN}"
-    reader = f"""
-import json, subprocess, sys
-from urllib.request import ProxyHandler, build_opener
-page = subprocess.Popen([sys.executable, "-c", {script!r}], stdout=subprocess.PIPE, text=True)
-address = page.stdout.readline().split()[0]
-answer = build_opener(ProxyHandler({{}})).open(address, timeout=600).read().decode()
-page.send_signal({int(signal.SIGINT)})
-assert page.wait(600) == -{int(signal.SIGINT)}
-print(json.dumps(answer))
-"""
-    answer = json.loads(run(guarded, "-c", reader))
-    assert "_static/controls.js" in answer
-    assert loaded(answer) == []

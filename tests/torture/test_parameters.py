@@ -17,21 +17,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
-from exploration import (  # noqa: F401 (two are fixtures of every test)
-    ANY,
-    ELASTIC,
-    NEAR_ONE,
-    ORDINARY,
-    SIZES,
-    arguments,
-    chains,
-    compiled,
-    explored,
-    interrupted_when_long,
-    limits,
-    outcome,
-    require_sound,
-)
+from exploration import explored, interrupted_when_long, outcome, require_sound
 from hypothesis import given
 from hypothesis import strategies as st
 from typer.main import get_command
@@ -41,6 +27,71 @@ from crazybilliards.apps.commands.line import app, main
 from crazybilliards.model import Chain
 from crazybilliards.particles import given_start, simulate
 from crazybilliards.particles.observers import OBSERVERS
+from crazybilliards.particles.stepping import compile_kernels
+
+resource = pytest.importorskip("resource")  # not on Windows
+
+ROOM = 24 * 2**30  # bytes of address space; more is asked for by mistake only
+
+STRANGE = st.sampled_from(
+    [
+        *(True, None, "", "1", "NaN", "x", b"1", (), [], [1.0], [None], [[1]], {}, 1j, 10**400),
+        *(np.float64(2.0), np.float32(1e-3), np.int64(-4), np.bool_(True), np.array([1.0, 2.0])),
+        *(np.zeros((3, 3)), np.array(3), range(3), "x" * 1000, [0] * 1000),
+    ]
+)
+EXTREME = st.sampled_from(
+    [
+        *(0, -1, 1, 2, 0.0, -0.0, -1.5, math.nan, math.inf, -math.inf, 1e300, 1e-300, 5e-324),
+        *(1e60, 1e-60, 1e30, 1e-30, 1e15, 1e-15, 1e9, 1e-9, 1e6, 1e-6, 1e3, 1e-3, 1e17),
+        *(10**3, 10**5, 10**7, 10**9, 10**18, 10**30),
+    ]
+)
+SIZES = st.integers(1, 12)
+ORDINARY = st.floats(0.01, 10).map(lambda value: float(f"{value:.3g}"))
+
+
+@st.composite
+def arguments(draw, **each):
+    """Draw some of the keyword arguments: up to two of them nasty, the others ordinary."""
+    chosen = draw(st.fixed_dictionaries({}, optional=each))
+    for _ in range(draw(st.sampled_from([0, 1, 1, 2]))):
+        chosen[draw(st.sampled_from(sorted(each)))] = draw(EXTREME | EXTREME | STRANGE)
+    return chosen
+
+
+def chains(restitution):
+    return arguments(
+        size=SIZES,
+        restitution=restitution,
+        gap=st.just(0.0) | ORDINARY,
+        **dict.fromkeys(("amplitude", "damping", "stiffness", "radius", "mass"), ORDINARY),
+        spring=st.sampled_from(["linear", "quadratic"]),
+    ).map(lambda parameters: {"size": 6, **parameters})
+
+
+ELASTIC = st.just(1.0)
+NEAR_ONE = st.just(1.0) | st.floats(0.9, 1.05).map(lambda e: round(e, 3))
+ANY = st.just(1.0) | st.floats(0, 1.1).map(lambda e: round(e, 3))
+
+
+@pytest.fixture(autouse=True)
+def limits():
+    """Bound the address space for the test."""
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (ROOM, before[1]))
+    yield
+    resource.setrlimit(resource.RLIMIT_AS, before)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def compiled():
+    """Compile the kernels beforehand, so that a Ctrl-C meets a computation."""
+    compile_kernels()
+    chain = Chain(size=2)
+    for frame in ("label", "eulerian"):
+        options = {"frame": frame, "velocity_variance": "evolving", "progress": False}
+        kinetic.hydrodynamics(chain, kinetic.displaced(chain, 1.0), 0.1, **options)
 
 
 @explored(1000)
