@@ -92,20 +92,6 @@ def test_they_are_the_averages_of_the_snapshots(average):
     np.testing.assert_array_equal(run.neighbour_covariance, neighbours)
 
 
-@pytest.mark.compiled
-def test_the_centre_of_mass_knows_nothing_of_collisions():
-    """All rods together: sum_ij <v_i v_j> = L W^2, at every restitution."""
-    chain = Chain(size=8, restitution=0)
-    observe = "modes", Covariances(separations=99)
-    run = simulate(chain, duration=2000, seed=1, observe=observe, progress=False)
-    products = run.velocity_covariance
-    assert run.sizes["separation"] == 8
-    every = 2 * products.sum() - products.sel(separation=0).sum()
-    np.testing.assert_allclose(every, 8 * run.mode_velocity_variance[0])
-    of_mass = [each[0] for each in with_error(run, "mode_velocity_variance")]
-    agree(of_mass, chain.free_velocity_width**2)
-
-
 def test_steps_that_diverge_do_not_count():
     def recorded(most, fastest):
         dynamics = make_dynamics(Chain(size=5, restitution=0.5), 0.1, speed=1.0, counted=True)

@@ -51,17 +51,6 @@ def test_the_error_of_the_step_is_never_zero_where_there_is_one(chain, settings,
 
 
 @pytest.mark.compiled
-def test_the_error_of_eulers_step_is_that_of_a_free_rod():
-    chain = Chain(size=3, damping=4.0)
-    run = simulate(chain, duration=10_000, time_step=0.2, stepper="euler", seed=1, **QUIET)
-    ratio = np.sqrt(np.mean(run.velocity_width**2)) / chain.free_velocity_width - 1
-    error = float(run.velocity_width_error.mean()) / chain.free_velocity_width / 3**0.5
-    heat = 1 - chain.damping * 0.2 / (2 * chain.mass) - chain.stiffness * 0.2**2 / (4 * chain.mass)
-    assert run.attrs["time_step_error"] == pytest.approx(heat**-0.5 - 1)
-    assert abs(float(ratio) - run.attrs["time_step_error"]) < 5 * error
-
-
-@pytest.mark.compiled
 @pytest.mark.validate
 @pytest.mark.parametrize(("damping", "relaxations"), [(0.1, 60), (1.0, 20), (10.0, 20)])
 def test_error_bars_of_short_runs_cover(damping, relaxations):
@@ -214,10 +203,10 @@ def test_densities_that_are_not_alike_are_not_compared():
 @pytest.mark.compiled
 @pytest.mark.validate
 def test_the_largest_deviation_in_errors_is_as_documented():
-    """Of 40 runs that agree with the exact density; rarely visited bins are left out."""
+    """Of 20 runs that agree with the exact density; rarely visited bins are left out."""
     chain = Chain(size=20, amplitude=5.0, gap=1.0)
     exact, how = smooth(equilibrium(chain)), {"observe": "density", **QUIET}
-    runs = (simulate(chain, seed=seed, **how) for seed in range(40))
+    runs = (simulate(chain, seed=seed, **how) for seed in range(20))
     pulls = np.array([deviation(smooth(run), exact).maximum_in_errors for run in runs])
     assert 2.7 < np.median(pulls) < 3.8
     assert (pulls > 4.5).mean() <= 0.125

@@ -1,4 +1,4 @@
-"""Correlations in time, against oscillators: the centre of mass, and two elastic rods."""
+"""Correlations in time, against an oscillator, which the centre of mass is, and raw snapshots."""
 
 import numpy as np
 import pytest
@@ -111,48 +111,19 @@ def test_stated_errors_are_the_scatter_in_runs_of_twenty_longest_lags():
         assert 0.75 < np.median(values.std(axis=0, ddof=1)[used] / stated) < 1.25
 
 
-def two_rods(chain, t):
-    """Exact functions of the distance of two elastic rods, the modulus of an oscillator x.
-
-    <|x(0) x(t)|> = (2/pi) s^2 (sqrt(1 - c^2) + c asin c) for Gaussian x with the autocorrelation
-    s^2 c, and the velocities have minus its second derivative.
-    """
-    c, velocity = oscillator(chain, t)
-    rate = chain.stiffness / chain.mass
-    half = chain.damping / (2 * chain.mass)
-    swing = np.sqrt(complex(rate - half**2))
-    slope = (-rate * np.exp(-half * t) * np.sin(swing * t) / swing).real
-    variance = 2 * chain.temperature / chain.stiffness
-    product = variance * 2 / np.pi * (np.sqrt(1 - c**2) + c * np.arcsin(c))
-    with np.errstate(invalid="ignore"):
-        bent = np.where(t > 0, slope**2 / np.sqrt(1 - c**2), 0)
-    speeds = -variance * 2 / np.pi * (bent - rate * np.arcsin(c) * velocity)
-    return speeds, product - variance * 2 / np.pi, 2 * (variance - product)
-
-
 @pytest.mark.compiled
-@pytest.mark.parametrize("average", ["time", "ensemble"])
-def test_two_elastic_rods_remember_what_the_modulus_of_an_oscillator_does(average):
-    chain = Chain(size=2)
-    how = {"duration": 20_000, "replicas": 2, "seed": 1}
-    if average == "ensemble":
-        start = cb.equilibrium_states(chain, 500, seed=1)
-        how = {"duration": 12, "replicas": 500, "average": average, "every": 2.0, "start": start}
-    run = simulate(chain, observe="time-correlations", progress=False, **how)
-    along = "time" if average == "ensemble" else "lag"
-    t = run[along].values
-    apart = two_rods(chain, t)
-    displacement, velocity = oscillator(chain, t)
-    displacement *= chain.temperature / chain.stiffness / 2
-    velocity *= chain.temperature / chain.mass / 2
-    centre = velocity, displacement, 2 * (displacement[0] - displacement)
-    rod = [own + relative / 4 for own, relative in zip(centre, apart, strict=True)]
-    for particle in (1, 2):
-        for each in pulls(run.sel(particle=particle), "", rod).values():
-            assert np.nanmax(abs(each)) < 5
-    wave = run.sel(wave=1)
-    for each in pulls(wave, "wave_", [values / 2 for values in apart]).values():
-        assert np.nanmax(abs(each)) < 5
+def test_in_an_ensemble_pairs_are_those_of_the_first_snapshot_and_each():
+    chain, observe = Chain(size=4, restitution=0.5), ["time-correlations", "snapshots"]
+    how = {"duration": 6, "every": 2.0, "replicas": 40, "average": "ensemble", "progress": False}
+    run = simulate(chain, observe=observe, **how)
+    rods = run.position.values - chain.anchors, run.velocity.values
+    waves = [dct(each, norm="ortho") for each in rods]
+    for of, (d, v) in {"": rods, "wave_": waves, "centre_": [w[..., 0] / 2 for w in waves]}.items():
+        first = d[:, :1]
+        kept = (first * d).mean(axis=0) - first.mean(axis=0) * d.mean(axis=0)
+        expected = (v[:, :1] * v).mean(axis=0), kept, ((d - first) ** 2).mean(axis=0)
+        for name, values in zip(QUANTITIES, expected, strict=False):
+            np.testing.assert_allclose(run[of + name], values, atol=1e-12)
 
 
 @pytest.mark.filterwarnings("ignore:.*spectra are NaN")
