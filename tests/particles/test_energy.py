@@ -93,7 +93,7 @@ def test_two_elastic_rods_of_contact_dynamics_keep_their_energy(spring, gap):
 )
 def test_noise_damping_and_collisions_balance(e, spring, damping, gap):
     """The noise gives L A^2/2m. Damping takes gamma sum <v^2>, collisions the loss at contacts."""
-    chain = Chain(size=20, restitution=e, spring=spring, gap=gap, damping=damping)
+    chain = Chain(size=10, restitution=e, spring=spring, gap=gap, damping=damping)
     chain = chain.replace(amplitude=math.sqrt(8 * damping))  # alike hot at any damping
     how = {"observe": ("widths", "impacts"), "progress": False}
     if e == 1:

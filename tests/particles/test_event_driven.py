@@ -39,7 +39,6 @@ def states(draw):
     return y, v, draw(st.floats(0.01, 20))
 
 
-@settings(max_examples=120)
 @given(
     state=states(),
     e=RESTITUTIONS,
@@ -53,7 +52,7 @@ def test_every_bit_is_that_of_the_twin(state, e, merge_speed, gap, exponent):
 
 
 @pytest.mark.parametrize("e", [0.05, 0.9999, 1.05])
-@pytest.mark.parametrize(("rods", "rows"), [(LONG + 2, 1), (5, 30)])
+@pytest.mark.parametrize(("rods", "rows"), [(LONG + 2, 1), (5, 10)])
 @pytest.mark.parametrize("thrown", ["at random", "with equal speeds", "at rest", "in two halves"])
 def test_long_rows_of_touching_rods_move_to_the_bit_as_with_the_twin(thrown, rods, rows, e):
     """Longer rows than a tournament needs, and many short ones, with exact ties."""

@@ -39,20 +39,24 @@ SPECIAL = {1.0: [SORT], 0.0: [ISOTONIC]}
 AROUNDS = [PLAIN, Around(0.5, 0.0), Around(masses=(1, 3)), Around(0.5, 0.0, (1, 3))]
 
 
-@pytest.mark.parametrize("e", RESTITUTIONS)
 @pytest.mark.parametrize("around", AROUNDS)
 @pytest.mark.parametrize("name", HOSTILE)
-def test_no_rod_passes_another_and_nothing_is_lost_or_won(around, name, e):
+def test_no_rod_passes_another_and_nothing_is_lost_or_won(around, name):
     """The quick laws move as one collision after the other does."""
-    e = min(e, 1.0) if around.room < np.inf else e  # with flippers in a box nothing is bounded
+    # With flippers in a box nothing is bounded.
+    for e in RESTITUTIONS[: 5 if around.room < np.inf else 6]:
+        require_kept_and_alike(HOSTILE[name], e, around)
+
+
+def require_kept_and_alike(state, e, around):
     special = SPECIAL.get(e, []) if around == PLAIN or e == 0 else []
     for dt, pull in ((1.5, 0.0), (1.5, 0.4), (500.0, 0.0)):
         for operator in (*OPERATORS, *special):
             for gap, exponent in ((0.0, 2), (0.3, 3)):
                 springs = {"pull": pull, "gap": gap, "exponent": exponent, "around": around}
-                require_kept(operator, HOSTILE[name], dt, e, **springs)
+                require_kept(operator, state, dt, e, **springs)
         for quick in special:
-            require_alike(quick, EVENTS, HOSTILE[name], dt, e, around=around)
+            require_alike(quick, EVENTS, state, dt, e, around=around)
 
 
 @pytest.mark.parametrize("together", [0.0, 1.0])

@@ -25,7 +25,7 @@ def centre_and_border(chain, share=0.1, **settings):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize(("size", "found", "duration"), [(30, 0.1181, 4000), (100, 0.0751, 1500)])
+@pytest.mark.parametrize(("size", "found", "duration"), [(30, 0.1181, 2500), (100, 0.0751, 1000)])
 def test_the_centre_of_the_inelastic_chain_is_as_cold_as_it_was_found(size, found, duration):
     chain = Chain(size=size, restitution=0)
     centre, error, border, _ = centre_and_border(chain, duration=duration)
@@ -33,14 +33,6 @@ def test_the_centre_of_the_inelastic_chain_is_as_cold_as_it_was_found(size, foun
     assert centre == pytest.approx(found, rel=0.04)
     assert 0.2 < border < 0.25
     assert centre_width(chain) * chain.free_velocity_width == pytest.approx(centre, rel=0.2)
-
-
-@pytest.mark.compiled
-def test_flippers_heat_the_centre_of_short_chains_and_the_border_of_long_ones():
-    for size, sign in ((50, 1), (100, -1)):
-        chain = FLIPPERS.replace(size=size)
-        centre, error, border, border_error = centre_and_border(chain, duration=1000)
-        assert sign * (centre - border) > 5 * np.hypot(error, border_error)
 
 
 FLIPPERS = Chain(size=150, restitution=1.05, damping=4)
@@ -83,8 +75,8 @@ def test_a_chain_that_explodes_at_once_has_a_status_and_no_averages():
     assert len(run.data_vars) == 0
 
 
-MERGING = [{"duration": 5000, "merging": merging} for merging in (0.01, 0.1)]
-CONTACTS = {"duration": 3000, "time_step": 0.003, "method": "contact-dynamics"}
+MERGING = [{"duration": 2500, "merging": merging} for merging in (0.01, 0.1)]
+CONTACTS = {"duration": 1500, "time_step": 0.003, "method": "contact-dynamics"}
 ALIKE = {  # a restitution, and two ways to simulate it
     **{f"merging, e = {e}": (e, *MERGING) for e in (0.5, 0.95)},
     "contact dynamics": (0.0, CONTACTS | {"method": "event-driven"}, CONTACTS),

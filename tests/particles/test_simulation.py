@@ -10,7 +10,6 @@ from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
 from crazybilliards.particles import given_start, simulate
 from crazybilliards.particles.dynamics import longest_step
-from crazybilliards.particles.observers.widths import Widths
 
 QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
 
@@ -20,8 +19,6 @@ QUANTITIES = ("velocity_width", "mean_displacement", "displacement_width")
     ("size", "gap", "spring"),
     [
         (1, 0.2, "quadratic"),
-        (2, 1.0, "linear"),
-        (3, 0.2, "quadratic"),
         (20, 0.0, "linear"),
         (20, 0.0, "quadratic"),
         (20, 0.2, "linear"),
@@ -83,16 +80,6 @@ def test_a_step_is_refused_just_where_it_gets_unstable(stepper, damping, stiffne
     simulate(pair, duration=2e3, start=start, **longest)
 
 
-@pytest.mark.compiled
-def test_ctrl_c_keeps_what_was_measured(ctrl_c):
-    ctrl_c(Widths, "observe", lambda observers: len(set(map(id, observers))) == 2)  # both replicas
-    run = simulate(Chain(size=50), duration=1e9, replicas=2, progress=False)
-    assert run.attrs["status"] == "interrupted"
-    assert 0 < run.attrs["end_time"] < 1e9
-    assert np.isfinite(run.velocity_width).all()
-    assert (run.velocity_width_error > 0).all()
-
-
 @pytest.mark.filterwarnings("ignore:.*Without a steady state")
 @pytest.mark.parametrize(
     ("average", "observe"),
@@ -116,11 +103,11 @@ def test_long_times_between_snapshots_are_taken_in_parts(average, observe, monke
 
 @pytest.mark.compiled
 def test_memory_does_not_grow_with_the_duration():
-    chain = Chain(size=20)
+    chain, often = Chain(size=20), {"every": 0.1, "time_step": 0.1, "progress": False}
     peaks = []
-    for duration in (1_000, 1_000, 20_000):  # the first one loads what stays loaded
+    for duration in (100, 100, 2_000):  # the first one loads what stays loaded
         tracemalloc.start()
-        simulate(chain, duration=duration, progress=False)
+        simulate(chain, duration=duration, **often)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     # A full buffer of snapshots is 2 MB; storing the longer run would take 6 MB.
@@ -130,9 +117,9 @@ def test_memory_does_not_grow_with_the_duration():
 @pytest.mark.compiled
 @pytest.mark.parametrize("average", ["time", "ensemble"])
 def test_a_short_run_may_have_short_steps(average):
-    """A thousand steps of 1e-9 t_0 cost nothing, and a thousand of them show how noise begins."""
+    """A hundred steps of 1e-9 t_0 cost nothing, and show how noise begins."""
     chain = Chain(size=3)
-    arguments = {"duration": 1e-6, "every": 1e-9, "warmup": 0.0, "observe": "energy"}
+    arguments = {"duration": 1e-7, "every": 1e-9, "warmup": 0.0, "observe": "energy"}
     run = simulate(chain, average=average, replicas=32, **arguments, progress=False)
     heating = chain.size * chain.amplitude**2 / (2 * chain.mass)
     last = float(run.kinetic_energy[-1])
