@@ -82,7 +82,7 @@ def until(condition):
     deadline = time.monotonic() + PATIENCE
     while not (found := condition()):
         assert time.monotonic() < deadline, "waited for too long"
-        time.sleep(0.002)
+        time.sleep(0.02)
     return found
 
 

@@ -5,22 +5,20 @@ Sphinx checks the links of the documentation.
 
 import re
 from html import escape
-from pathlib import Path
 from pkgutil import resolve_name
 
 import jupytext
 import pandas as pd
 import qr_code
+from installation import FOLDERS, ROOT
 
 import crazybilliards as cb
 from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.reproduction.figures import FIGURES
 
-ROOT = Path(__file__).parents[1]
 FRONT = sorted({*ROOT.glob("*.md"), *ROOT.glob(".github/*.md")} - {ROOT / "CHANGELOG.md"})
 PAGES = [*FRONT, *sorted((ROOT / "docs").rglob("*.md"))]
-ROOMS = ("api", "model", "particles", "kinetic", "comparison", "reproduction", "apps")
-CODE = (*ROOMS, "benchmarks", "docs", "notebooks", "studies")
+CODE = (*FOLDERS, "benchmarks", "docs", "notebooks", "studies")
 LESSONS = [path.with_suffix(".py") for path in sorted((ROOT / "notebooks").glob("*.ipynb"))]
 
 
@@ -112,7 +110,7 @@ def rows(heading):
 
 
 def test_the_concordance_names_what_exists():
-    for name in set(re.findall(rf"`((?:{'|'.join(ROOMS[1:])})(?:\.\w+)+)`", CONCORDANCE)):
+    for name in set(re.findall(rf"`((?:{'|'.join(FOLDERS)})(?:\.\w+)+)`", CONCORDANCE)):
         resolve_name(f"crazybilliards.{name}")
     assert VOCABULARY.keys() >= {*re.findall(r"(?:variable|coordinate)s? `(\w+)`", CONCORDANCE)}
 
