@@ -93,7 +93,12 @@ def make_dynamics(
 
 def default_merging(chain: Chain) -> float:
     """Return the threshold of merging at this restitution, in velocity kicks of one step."""
-    return _MERGING_OF_CLOSED if chain.restitution < CRITICAL_RESTITUTION else _MERGING
+    return _MERGING_OF_CLOSED if rods_stick(chain) else _MERGING
+
+
+def rods_stick(chain: Chain) -> bool:
+    """Return whether rods that meet each other or a wall come to rest in contact."""
+    return min(chain.restitution, chain.wall_restitution) < CRITICAL_RESTITUTION
 
 
 def make_step(
@@ -109,7 +114,7 @@ def make_step(
         return Step(time_step, decay, noise, decay, noise, full_kick, exponent, False, 1.0, 1.0)
     inner, outer = (_ornstein_uhlenbeck(chain, duration) for duration in (time_step, time_step / 2))
     # Contact Dynamics has no stronger noise for closed contacts, as in the paper.
-    sticking = chain.restitution < CRITICAL_RESTITUTION and method == "event-driven"
+    sticking = rods_stick(chain) and method == "event-driven"
     strength = CLOSED_KICK if sticking else 1.0
     # The half kick before a snapshot is left as it is. The one after it is so much stronger that
     # both together have strength^2 times the variance, which is 1 + decay^2 times that of one.

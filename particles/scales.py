@@ -28,6 +28,7 @@ knows: frozenset[str] = WALLS_AND_MASSES
 _RESOLUTION, _KICK = 0.05, 0.3
 # Relative errors of W_v for a kick of r W_v, in units of r^3, r^(3/2), |1 - e| r^(3/2) and r^4.
 _CORRECTED, _UNCORRECTED, _REBOUNDS, _LONG = 0.1, 0.24, 0.1, 0.05
+_AT_WALLS = 0.12  # in units of r^(3/2), where walls take nearly all, but not all
 _HEATING = 1.5e-3  # by collisions with a gap, in units of (m w0/gamma) (w0 dt)^4
 _HEATING_UNEQUAL = 1.5e-2  # the same with walls, or of unequal masses
 _SLOWEST_MODE = 1.241  # rate of a strongly damped rod on a quadratic spring, in k s/gamma
@@ -146,6 +147,8 @@ def time_step_error(
     ratio = chain.amplitude / lightest * math.sqrt(time_step) / velocity_width
     plain = stepper == "splitting" and method == "event-driven"
     noise = [_noise_error(e, ratio, method, plain) for e in restitutions]
+    if plain and 0 < chain.wall_restitution < CRITICAL_RESTITUTION:
+        noise.append(_AT_WALLS * ratio**1.5)
     return springs + float(np.max(noise, initial=0.0))  # NaN if one of them is
 
 

@@ -33,7 +33,7 @@ from crazybilliards.particles.laws import unequal
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.closed_contacts import find_clusters, strengthen
 from crazybilliards.particles.laws.exact_flight import propagate
-from crazybilliards.particles.laws.law import EXACT, Scratch, drift, make_scratch
+from crazybilliards.particles.laws.law import EXACT, ISOTONIC, Scratch, drift, make_scratch
 from crazybilliards.particles.laws.sort import sort_pairs
 from crazybilliards.particles.laws.walls import fold
 from crazybilliards.particles.noise import Noise, fill, make_noise
@@ -71,12 +71,20 @@ def draw_kicks(noise, kicks, width, due):  # type: ignore[no-untyped-def]
     return rows
 
 
+@inlined
+def _find_clusters(y, law, scratch):  # type: ignore[no-untyped-def]
+    """Find the rods in contact, which isotonic regression has listed already."""
+    if law.operator != ISOTONIC:
+        find_clusters(y, scratch.clusters, law.low, law.high)
+
+
 @inlined(once=True)
 def _take_unequal_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-untyped-def]
     """Do as ``take_step``, with rods of unequal masses or between walls."""
     anchors, step, second = dynamics.anchors, dynamics.step, dynamics.second
     strength = step.closed_outer if part == FIRST else step.closed
     if strength != 1.0 and part != LAST:
+        _find_clusters(y, dynamics.law, scratch)
         unequal.strengthen(kicks, y, strength, dynamics.law, scratch)
     if step.decay == second.decay and step.noise == second.noise and step.kick == second.kick:
         kick(y, v, anchors, kicks, step, part)
@@ -102,6 +110,7 @@ def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-u
         return 0
     strength = step.closed_outer if part == FIRST else step.closed
     if strength != 1.0:
+        _find_clusters(y, dynamics.law, scratch)
         strengthen(kicks, scratch.clusters, strength)
     kick(y, v, dynamics.anchors, kicks, step, part)
     return drift(y, v, dynamics.anchors, step.time_step, dynamics.law, scratch, tally)

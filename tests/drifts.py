@@ -12,6 +12,7 @@ from crazybilliards.particles.laws import law as laws
 from crazybilliards.particles.laws.avalanche import make_tally, make_waves
 from crazybilliards.particles.laws.impacts import make_impacts
 from crazybilliards.particles.laws.law import CONTACTS, EVENTS, Law, make_scratch
+from crazybilliards.particles.laws.unequal import row_restitution
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.stepping import advance
 
@@ -49,7 +50,6 @@ class Drifted(NamedTuple):
     impacts: np.ndarray
     contacts: np.ndarray  # collisions of each
     struck: np.ndarray  # what the left and the right wall received: impulses, hits
-    clusters: list  # of the rods that have merged: the first one and the one after the last
     masses: np.ndarray
     anchors: np.ndarray
     law: Law
@@ -76,7 +76,8 @@ def drifted(
     walls = [0.0] if high < math.inf else []
     inverse = np.array([*walls, *(1 / masses), *walls] if around != PLAIN else [])
     merging = merge_speed if min(e, around.wall) < 1 else 0.0
-    springs = pull, exponent, -high, high, float(around.wall), around != PLAIN
+    from_row = row_restitution(e, around.wall)
+    springs = pull, exponent, -high, high, float(around.wall), around != PLAIN, from_row
     law, scratch = Law(operator, e, merging, most, *springs), make_scratch(y.size, inverse)
     anchors = gap * (np.arange(y.size) - (y.size - 1) / 2)
     collisions = drift(y, v, anchors, dt, law, scratch, tally)
@@ -84,10 +85,8 @@ def drifted(
     if operator == EVENTS and collisions >= 0:
         assert tally.contacts.sum() + tally.struck[1].sum() == collisions
     assert (scratch.joint == scratch.inverse).all()
-    firsts, lasts, number = scratch.clusters
-    clusters = list(zip(*(each[: number[0]].tolist() for each in (firsts, lasts)), strict=True))
     counted = tally.impacts, tally.contacts, tally.struck
-    return Drifted(y, v, collisions, *counted, clusters, masses, anchors, law)
+    return Drifted(y, v, collisions, *counted, masses, anchors, law)
 
 
 def require_kept(operator, state, dt, e, **around_it):

@@ -15,9 +15,10 @@ list of the calendar is long, **a tournament** (``tournament.py``) takes over un
 step.
 
 **Inelastic collapse.** For e < 1 neighbours may collide infinitely often in a finite time. If the
-speed of separation e |v - v'| would be below ``merge_speed``, the two become a *cluster* that
-moves as one until the end of the drift, with the mean velocity of its members and as many masses.
-Its state is stored at its outermost members. docs/physics/collisions.md has the consequences.
+speed of separation e |v - v'| would be below ``merge_speed``, or less than what springs are about
+to give the two towards each other, they become a *cluster* that moves as one until the end of the
+drift, with the mean velocity of its members and as many masses. Its state is stored at its
+outermost members. docs/physics/collisions.md has the consequences.
 
 **Positions at the beginning of the step.** y holds the position that a point with its present
 velocity would have had at t = 0. A collision at t changes y by (v_before - v_after) t, and no point
@@ -73,9 +74,9 @@ def _fastest(begin, end, due, v):  # type: ignore[no-untyped-def]
 
 @inlined
 def _finish(y, v, dt, merged, scratch):  # type: ignore[no-untyped-def]
-    """Move the rods to the end of the step, and record those in contact, if any have merged."""
-    first, last, clusters = scratch.first, scratch.last, scratch.clusters
-    a = number = 0
+    """Move the rods to the end of the step, and undo the clusters, if any have merged."""
+    first, last = scratch.first, scratch.last
+    a = 0
     if not merged:
         for i in range(y.size):
             y[i] += dt * v[i]
@@ -89,8 +90,6 @@ def _finish(y, v, dt, merged, scratch):  # type: ignore[no-untyped-def]
             position = y[a - 1]
         y[a] = position
         if b > a:
-            clusters.firsts[number], clusters.lasts[number] = a, b + 1
-            number += 1
             if scratch.joint.size > 0:
                 for i in range(a, b + 1):
                     scratch.joint[i] = scratch.inverse[i]
@@ -100,7 +99,6 @@ def _finish(y, v, dt, merged, scratch):  # type: ignore[no-untyped-def]
                 first[i] = last[i] = i
             last[a] = a
         a = b + 1
-    clusters.number[0] = number
 
 
 @inlined
@@ -148,7 +146,7 @@ def _collide(contact, now, y, v, anchors, dt, law, scratch, tally):  # type: ign
     e = min(law.restitution, 1.0) if now == 0.0 else law.restitution
     closing = v_left - v_right - ahead
     rebound = e * closing
-    merges = rebound <= law.merge_speed
+    merges = rebound <= law.merge_speed or (rebound <= ahead and e < 1.0)
     indices = np.int64(contact), np.int64(a), np.int64(b)
     if tally.contacts.size + tally.pushes.heads.size + tally.triggered.heads.size > 0:
         record_collision(*indices, v_left, v_right, tally)
@@ -218,8 +216,8 @@ def _collide_touching(y, v, anchors, dt, law, scratch, tally, count):  # type: i
 def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt``; return the collisions, or -1 if too many.
 
-    ``scratch.clusters`` records the rods that have merged, and ``tally`` (an ``avalanche.Tally``)
-    every collision. After ``law.most`` of them the drift stops, and the state must not be used.
+    ``tally`` (an ``avalanche.Tally``) records every collision. After ``law.most`` of them the drift
+    stops, and the state must not be used.
     """
     size, contacts = y.size, INDEX(y.size - 1)
     due, winner = scratch.due, scratch.winner

@@ -32,6 +32,7 @@ from crazybilliards.particles.laws import (
 from crazybilliards.particles.laws.closed_contacts import Clusters, make_clusters
 from crazybilliards.particles.laws.exact_flight import independent_rods
 from crazybilliards.particles.laws.impacts import make_impacts
+from crazybilliards.particles.laws.unequal import row_restitution
 from crazybilliards.particles.noise import BLOCK
 
 Method = Literal["event-driven", "contact-dynamics"]
@@ -63,6 +64,7 @@ class Law(NamedTuple):
     high: float = math.inf
     wall_restitution: float = 1.0
     unequal: bool = False  # masses differ, or there are walls
+    row_restitution: float = 1.0  # of a rod that hits one that rests at a wall
 
 
 class Scratch(NamedTuple):
@@ -180,7 +182,8 @@ def make_law(
     if operator == EVENTS and chain.gap == 0 and not unequal:
         pull = 0.0  # rods with one anchor have the same acceleration where they meet
     most = 1_000 * chain.size + 1_000_000
-    around = *chain.walls, chain.wall_restitution, unequal
+    from_row = row_restitution(chain.restitution, chain.wall_restitution)
+    around = *chain.walls, chain.wall_restitution, unequal, from_row
     exponent = chain.potential_exponent
     return Law(operator, chain.restitution, merge_speed, most, pull, exponent, *around)
 

@@ -7,6 +7,9 @@ Momentum is conserved, and the reduced mass is 1/(w + w'). Rods that merge have 
 w w'/(w + w'). The springs of the two give different accelerations (``spring_correction.py``), also
 without a gap, and that of a wall is 0. Masses are in units of the first rod's.
 
+**Rods that rest at a wall** stay there when another rod hits them, as part of the wall. The rod
+that flies in rebounds with a restitution of its own (``row_restitution``).
+
 The threshold below which two rods merge is in kicks of the noise, so it is in proportion to the
 mean of the inverse masses of the two rods.
 """
@@ -15,6 +18,7 @@ import numpy as np
 
 from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.laws.avalanche import record_collision
+from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
 from crazybilliards.particles.laws.impacts import (
     ENERGY_AFTER,
     ENERGY_BEFORE,
@@ -47,12 +51,14 @@ def collide(contact, a, b, now, y, v, anchors, dt, law, scratch, tally):  # type
             0.0, place - anchors[neighbour], law.pull * w_right, law.exponent, since
         )
     wall = single[contact] == 0.0 or single[neighbour] == 0.0
-    e = law.wall_restitution if wall else law.restitution
+    at_wall = w * w_right == 0.0
+    e = law.wall_restitution if wall else law.row_restitution if at_wall else law.restitution
     e = min(e, 1.0) if now == 0.0 else e
     closing = v_left - v_right - ahead
     rebound = e * closing
-    least = law.merge_speed * 0.5 * (single[contact] + single[neighbour]) if e < 1.0 else 0.0
-    merges = rebound <= least
+    least = law.merge_speed * 0.5 * (single[contact] + single[neighbour])
+    least = least if e < 1.0 or at_wall else 0.0
+    merges = rebound <= least or (rebound <= ahead and e < 1.0)
     apart = 0.0 if merges else max(rebound - ahead, 0.0)  # no rod passes another
     change = v_left - v_right + apart
     if tally.contacts.size + tally.impacts.size + tally.struck.size > 0:
@@ -68,6 +74,8 @@ def collide(contact, a, b, now, y, v, anchors, dt, law, scratch, tally):  # type
         y_right = y[neighbour] + (v_right - new_right) * now
     else:
         joint[a] = joint[b] = share * w_right
+        if at_wall:  # without rounding, because rods that rest at a wall are known by their place
+            y_left = y_right = law.low if w == 0.0 else law.high
     v[a] = v[contact] = new_left
     v[b] = v[neighbour] = new_right
     y[a] = y[contact] = y_left
@@ -140,12 +148,29 @@ def strengthen(kicks, y, strength, law, scratch):  # type: ignore[no-untyped-def
     clusters, before = scratch.clusters, 1 if law.high < np.inf else 0
     for k in range(clusters.number[0]):
         first, last = clusters.firsts[k], clusters.lasts[k]
+        rests = y[first] == law.low or y[first] == law.high
+        if not rests and law.restitution >= CRITICAL_RESTITUTION:
+            continue
         total = mass = 0.0
         for i in range(first, last):
             total += kicks[i]
             mass += 1.0 / scratch.inverse[i + before]
-        rests = y[first] == law.low or y[first] == law.high
         mean = 0.0 if rests else total / mass
         for i in range(first, last):
             own = mean / scratch.inverse[i + before]
             kicks[i] = own + strength * (kicks[i] - own)
+
+
+def row_restitution(e: float, e_wall: float) -> float:
+    """Return the restitution of a rod that hits one at rest at a wall.
+
+    The two collide with e, the other one meets the wall with e_wall, and so on until they separate:
+    e e_wall where one of the two is 1, and 0 if the wall takes all. Of other pairs the rod at the
+    wall keeps a small velocity, which is left out.
+    """
+    rod, other = 1.0, 0.0  # velocities towards the wall
+    while rod - other > 1e-9:
+        common, change = (rod + other) / 2, e * (rod - other) / 2
+        rod, other = common - change, common + change
+        other = -e_wall * other if other > 0 else other
+    return max(-rod, 0.0)

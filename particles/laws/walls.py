@@ -38,14 +38,6 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
     copy(rods_v, v)
     for i in range(n):
         y[i] = min(max(rods_y[i], law.low), law.high)
-    clusters = scratch.clusters
-    for k in range(clusters.number[0]):
-        first, last = max(clusters.firsts[k] - 1, 0), min(clusters.lasts[k] - 1, n)
-        if clusters.firsts[k] == 0:
-            y[first:last] = law.low
-        if clusters.lasts[k] == n + 2:
-            y[first:last] = law.high
-        clusters.firsts[k], clusters.lasts[k] = first, last
     return collisions
 
 

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
+from scipy.optimize import brentq
+
+from crazybilliards.model.warn import warn_user
+from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
 from crazybilliards.particles.observers.base import Averaged, Integers, Snapshots, Variables
+from crazybilliards.particles.run import Run
+from crazybilliards.particles.scales import centre_width
+
+_MANY = 0.05  # share of slow collisions of which a warning tells
 
 
 class Collisions(Averaged):
     """collision_rate: collisions of each particle with its right neighbour, per time.
 
     The last particle has no such rate. Rods that have merged into a cluster do not collide again
-    until the next step. For e < 1 the rate depends on the time step. For e < 0.163 it is
-    infinite for dt -> 0.
+    until the next step, so for e < 1 slow collisions are missing; a warning says how many if they
+    are more than a few per cent. For e < 0.163 the rate is infinite.
     """
 
     name = "collisions"
@@ -25,4 +36,50 @@ class Collisions(Averaged):
     def report(self, counts: Integers) -> Variables:
         interval = self.run.every
         rate = {"collision_rate": lambda average: average / interval}
-        return self.averages(rate, counts, "particle")
+        variables = self.averages(rate, counts, "particle")
+        return checked_rate(self.run, "collision_rate", self.run.chain.restitution, variables)
+
+
+def checked_rate(run: Run, name: str, e: float, variables: Variables) -> Variables:
+    """Make a rate at restitution e infinite if it is; warn if slow collisions are many.
+
+    Two noisy rods that meet at a speed v meet again at u v with the density
+    (3/2 pi) u^(3/2)/(1 + u^3) of u at e = 1 (H. P. McKean, J. Math. Kyoto Univ. 2, 227, 1963), and
+    of u/e otherwise. Slow collisions then have speeds of the density v^(-1 - s) with
+    e^s = 2 sin(pi (2 s + 5)/6), and -2 < s < 0. Those below the threshold of merging, a part r of
+    a typical speed, are the share r^(-s) of all.
+    """
+    chain = run.chain
+    if e >= 1 or chain.amplitude == 0:
+        return variables
+    if e < CRITICAL_RESTITUTION:
+        warn_user(
+            f"{name} is infinite: with noise, rods that meet collide again without end at a "
+            f"restitution below {CRITICAL_RESTITUTION:.3f}, as e={e:g} here",
+            RuntimeWarning,
+        )
+        (dimensions, rates), (_, errors) = variables[name], variables[f"{name}_error"]
+        none = np.equal(rates, 0)
+        variables[name] = dimensions, np.where(none, rates, np.inf)
+        variables[f"{name}_error"] = dimensions, np.where(none, errors, np.nan)
+    elif chain.damping > 0:
+        width = centre_width(chain) * chain.free_velocity_width
+        threshold = run.merging * chain.amplitude / chain.mass * math.sqrt(run.time_step) / width
+        missing = min(threshold, 1.0) ** _decay_of_speeds(e)
+        if missing > _MANY:
+            warn_user(
+                f"{name} is too small, by about {missing:.0%} at this time step: slow collisions "
+                "are not counted, of which there are many at a small restitution",
+                RuntimeWarning,
+            )
+    return variables
+
+
+def _decay_of_speeds(e: float) -> float:
+    """Return -s of :func:`checked_rate`."""
+
+    def balance(s: float) -> float:
+        return s * math.log(e) - math.log(2 * math.sin(math.pi * (2 * s + 5) / 6))
+
+    beside_the_other_root = -math.log(e / CRITICAL_RESTITUTION) / 4.4
+    return -float(brentq(balance, -2.0, beside_the_other_root))

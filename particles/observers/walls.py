@@ -7,6 +7,7 @@ import numpy as np
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws.avalanche import Tally
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
+from crazybilliards.particles.observers.collisions import checked_rate
 from crazybilliards.particles.run import Run
 
 
@@ -46,7 +47,9 @@ class Walls(Averaged):
             "wall_force": lambda sums: self.mass / interval * sums[0],
             "wall_collision_rate": lambda sums: sums[1] / interval,
         }
-        return self.averages(quantities, counts, "wall")
+        variables = self.averages(quantities, counts, "wall")
+        e = self.run.chain.wall_restitution
+        return checked_rate(self.run, "wall_collision_rate", e, variables)
 
     def coordinates(self) -> dict[str, Array]:
         return {"wall": np.array([1.0, 2.0])}

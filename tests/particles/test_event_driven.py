@@ -47,7 +47,7 @@ def states(draw):
     exponent=st.sampled_from([2, 3]),
 )
 def test_every_bit_is_that_of_the_twin(state, e, merge_speed, gap, exponent):
-    """Positions, velocities, clusters, collisions, waves; and the same without a tally."""
+    """Positions, velocities, collisions, waves; and the same without a tally."""
     agree_to_the_bit(*state, e, merge_speed if e < 1 else 0.0, gap, exponent)
 
 
@@ -81,8 +81,6 @@ def agree_to_the_bit(y, v, dt, e, merge_speed, gap, exponent, most=MOST):
             return
         assert collisions == sum(expected.contacts)
         np.testing.assert_array_equal((after_y, after_v), (expected.y, expected.v))
-        firsts, lasts, number = scratch.clusters
-        assert list(zip(firsts[: number[0]], lasts[: number[0]], strict=True)) == expected.clusters
         if tally.contacts.size:
             np.testing.assert_array_equal(tally.contacts, expected_tally.contacts)
             np.testing.assert_array_equal(tally.impacts, expected_tally.impacts)
@@ -123,7 +121,6 @@ def agree(state, dt, e, around_it, most):
     np.testing.assert_allclose(found.v, expected.v, atol=1e-9 * np.abs(state[1]).max())
     assert found.contacts.tolist() == expected.contacts
     np.testing.assert_allclose(found.struck, [expected.impulses, expected.hits], atol=1e-9)
-    assert found.clusters == expected.clusters
 
 
 @settings(max_examples=200)

@@ -1,9 +1,11 @@
 """Gases between walls against exact laws: positions, velocities, pressure, and motion in time."""
 
 import math
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
+from drifts import moved
 
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
@@ -64,6 +66,41 @@ def test_on_springs_or_with_two_masses_the_pressure_is_exact_too(parameters, how
     assert np.abs(pulls(run, equilibrium(chain), *names)).max() < 5
     assert run.attrs["time_step_error"] < 1e-3
     assert (run.wall_force_error < 0.03 * run.wall_force).all()
+
+
+@pytest.mark.compiled
+@pytest.mark.filterwarnings("ignore:wall_collision_rate is infinite")
+@pytest.mark.parametrize(("wall", "width", "error"), [(0.0, 0.6178, 0.0), (0.1, 0.6200, 0.04)])
+def test_elastic_rods_meet_a_wall_that_absorbs_as_single_rods_do(wall, width, error):
+    """The force is that of each rod alone in the box; widths are from a 32nd of the step."""
+    chain = Chain(size=10, amplitude=3, stiffness=0, box=22, wall_restitution=wall)
+    one, how = chain.replace(size=1, box=4), {"observe": ["walls", "widths"], "duration": 5000}
+    many, alone = (simulate(each, replicas=100 // each.size, **how) for each in (chain, one))
+    off = many.wall_force / 10 - alone.wall_force
+    scatter = np.hypot(many.wall_force_error / 10, alone.wall_force_error)
+    assert (np.abs(off) < 5 * scatter).all()
+    assert error <= alone.attrs["time_step_error"] < error + 0.02
+    assert alone.velocity_width.item() == pytest.approx(width, rel=error + 5 * 1.1e-3)
+
+
+@pytest.mark.parametrize("time_step", [1.0, 0.25, 0.01])
+@pytest.mark.parametrize("e", [1.0, 0.9, 0.5])
+def test_two_rods_that_fly_to_a_wall_that_absorbs_both_stop_there(e, time_step):
+    chain = gas(2, room=10, damping=0, restitution=e, wall_restitution=0)
+    y, v = moved(chain, ([-4.89, -4.69], [-1.0, -1.0]), time_step, round(2 / time_step))
+    np.testing.assert_allclose([*y, *v], [-5, -5, 0, 0], atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("wall", "told"), [(0.1, "infinite"), (0.2, "small, by about 6.%"), (0.5, "")]
+)
+def test_a_rate_that_is_infinite_or_not_resolved_says_so(wall, told):
+    """True rates: .545 at e = .2 and .115 at .5, from steps of a hundredth and the known decay."""
+    chain = Chain(size=1, amplitude=3, stiffness=0, box=6, wall_restitution=wall)
+    with pytest.warns(RuntimeWarning, match=told) if told else nullcontext():
+        run = simulate(chain, observe="walls", duration=2000, time_step=0.02)
+    rate = run.wall_collision_rate.values.mean()
+    assert rate == np.inf if wall == 0.1 else 0.08 < rate < 0.25
 
 
 @pytest.mark.compiled

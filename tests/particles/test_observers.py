@@ -162,6 +162,7 @@ def test_energies_beside_snapshots_that_not_all_replicas_reached_are_unknown():
     np.testing.assert_allclose(reports["total_energy"][1], [unstretched, unstretched, np.nan])
 
 
+@pytest.mark.filterwarnings("ignore:collision_rate is infinite")
 @pytest.mark.parametrize(("size", "e"), [(1, 0.5), (2, 0.0), (2, 1.0), (3, 0.5)])
 def test_observers_of_rods_at_rest_and_of_a_few_rods(size, e):
     """Nothing moves without noise, what has no value is NaN, and sums are those of the rods."""

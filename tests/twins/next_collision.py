@@ -28,7 +28,6 @@ class Drifted(NamedTuple):
     contacts: list[int]  # collisions
     impulses: list[float]  # on the walls
     hits: list[int]
-    clusters: list[tuple[int, int]]  # of rods: the first one and the one after the last
 
 
 def drift(y, v, masses, anchors, dt, law, tally=None):
@@ -64,13 +63,12 @@ def drift(y, v, masses, anchors, dt, law, tally=None):
         for contact in {k - 1, k + len(new) - 1}:
             if 0 <= contact < len(due):
                 due[contact] = meeting(*bodies[contact : contact + 2], now, dt)
-    places, speeds, clusters = [], [], []
+    places, speeds = [], []
     for body in bodies:
         own = [rod for rod in body.rods if 0 <= rod < size]
         places += [max([body.y + dt * body.v, *places[-1:]])] * len(own)
         speeds += [body.v] * len(own)
-        clusters += [(own[0], own[-1] + 1)] if len(body.rods) > 1 else []
-    return Drifted(places, speeds, contacts, impulses, hits, clusters)
+    return Drifted(places, speeds, contacts, impulses, hits)
 
 
 def meeting(left, right, now, dt):
@@ -93,7 +91,7 @@ def collided_alike(left, right, anchors, now, dt, law, tally):
         ahead = law.pull * (forces[0] - forces[1]) * (now - dt / 2)
     closing = left.v - right.v - ahead
     rebound = e * closing
-    merges = rebound <= law.merge_speed
+    merges = rebound <= law.merge_speed or (rebound <= ahead and e < 1)
     record_impact(middle, first, last, closing, 0.0 if merges else rebound, tally.impacts)
     if merges:
         place = left.y + (left.v - common) * now
@@ -115,15 +113,17 @@ def collided(left, right, masses, anchors, now, dt, law):
         a, b = (acceleration(each, here, anchors, law) for each in (left, right))
         ahead = -a * since + b * since
     meet = left.rods[-1], right.rods[0]
-    at_wall = meet[0] == -1 or meet[1] == len(masses)
-    e = law.wall_restitution if at_wall else law.restitution
+    rests = left.inverse * right.inverse == 0  # one of the two, if it is no wall
+    e = law.row_restitution if rests else law.restitution
+    e = law.wall_restitution if meet[0] == -1 or meet[1] == len(masses) else e
     e = min(e, 1.0) if now == 0 else e
     closing = left.v - right.v - ahead
     rebound = e * closing
     kicks = sum(1 / masses[rod] for rod in meet if 0 <= rod < len(masses))
     both = left.inverse + right.inverse
     shares = left.inverse / both, right.inverse / both
-    merges = rebound <= (law.merge_speed * kicks / 2 if e < 1 else 0.0)
+    merges = rebound <= (law.merge_speed * kicks / 2 if e < 1 or rests else 0.0)
+    merges = merges or (rebound <= ahead and e < 1)
     apart = 0.0 if merges else max(rebound - ahead, 0.0)
     change = left.v - right.v + apart
     after = [left.v - shares[0] * change, right.v + shares[1] * change]
@@ -132,7 +132,8 @@ def collided(left, right, masses, anchors, now, dt, law):
     places = [body.y + (body.v - v) * now for body, v in zip((left, right), after, strict=True)]
     if merges:
         merged = left.rods + right.rods
-        return [Body(places[0], after[0], shares[0] * right.inverse, merged)], change / both
+        place = (law.low if left.inverse == 0 else law.high) if rests else places[0]
+        return [Body(place, after[0], shares[0] * right.inverse, merged)], change / both
     new = zip((left, right), places, after, strict=True)
     return [body._replace(y=y, v=v) for body, y, v in new], change / both
 
