@@ -49,6 +49,7 @@ def names():
     chain = cb.Chain(size=5)
     raw = {"duration": 10, "average": "ensemble", "observe": "snapshots", "progress": False}
     exact, moved = cb.equilibrium(chain), cb.displaced(chain, 1.0)
+    crystal = cb.equilibrium(cb.Chain(size=20))
     return {
         "cb": cb,
         "np": np,
@@ -64,8 +65,11 @@ def names():
         "sorts": chain.replace(mass_ratio=3),
         "exact": exact,
         "walls": cb.equilibrium(chain.replace(box=12)),
-        "crystal": cb.equilibrium(cb.Chain(size=20)),
+        "crystal": crystal,
+        "bulged": crystal.assign(velocity_width=2 - crystal.normalized_particle**2),
         "run": cb.simulate(chain, duration=100, progress=False),
+        "second": cb.simulate(chain, duration=100, progress=False, seed=1),
+        "boxed": cb.simulate(chain.replace(box=12), duration=100, progress=False),
         "snapshots": cb.simulate(chain, **raw),
         "start": cb.given_start(chain, chain.anchors),
         "foreign": xr.Dataset({"density": ("x", np.full(9, 0.1))}, {"x": np.arange(9.0)}),

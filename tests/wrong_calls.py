@@ -36,8 +36,16 @@ cb.given_start(chain, chain.anchors, np.ma.masked_less(range(5), 2)) | velocity 
 cb.simulate(chain, seed=[1, 2]) | a Generator of numpy...got [1, 2]
 cb.chain_of(foreign) | names no chain
 cb.deviation(foreign, foreign) | not a crazybilliards result
+cb.comparison.fit_arctanh(-exact) | not displaced outward
 cb.comparison.fit_arctanh(exact.isel(particle=slice(2))) | fit_arctanh: the result has 2 particles
 cb.comparison.fit_arctanh(exact.isel(particle=slice(None, None, -1))) | must ascend from 1 to 5
+cb.comparison.fit_border_power_law(exact.isel(particle=[0, 1])) | give all particles
+cb.comparison.fit_border_power_law(cb.equilibrium(cb.Chain(size=4))) | at least 5
+cb.comparison.fit_border_power_law(exact.assign(velocity_width=exact.particle - 1)) | positive
+cb.comparison.fit_border_power_law(crystal.where(crystal.particle != 3)) | positive widths
+cb.comparison.fit_border_power_law(crystal) | no power law fits
+cb.comparison.fit_border_power_law(bulged) | no power law fits
+cb.comparison.coverage_density(cb.smooth(exact)) | the density is smoothed already
 cb.smooth(run.sel(x=slice(-1, 1))) | of the chain's 5 rods: smooth needs the whole grid
 """
 
@@ -71,6 +79,19 @@ cb.simulate(chain, start=start * np.nan) | finite
 cb.given_start(chain, six.anchors) | position must fit...5 rods
 cb.given_start(chain, [0, 1, 2, 3, 4]) | do not overlap
 cb.given_start(walled, chain.anchors + 2) | between the walls: their centres lie within 5 of
+"""
+
+COMBINED = """
+cb.combine([run, boxed]) | of one chain, got ...box=0.0...and ...box=12.0
+cb.combine([run, run]) | other seeds, got 0 twice
+cb.combine([run, second.isel(particle=[1, 2])]) | runs must have the same particle
+cb.combine([run, second.drop_vars("density")]) | no 'density'
+cb.combine([exact, run]) | takes results of simulate
+cb.combine([cb.smooth(run), cb.smooth(second)]) | before their densities are smoothed
+cb.combine([run, 3]) | not a crazybilliards result: 3
+cb.combine(run) | runs must be a list of results, ... got a Dataset
+cb.combine([]) | runs must be a list
+cb.combine(3) | runs must be a list
 """
 
 # What does not know walls or two masses refuses them. In a box ``walled`` 12 long, and every second
@@ -160,7 +181,7 @@ cb.film(snapshots, duration=5) | duration is that of a chain to simulate
 
 WRONG_CALLS = [
     line.split(" | ")
-    for table in (NAMES, VALUES, RUNS, UNKNOWN, UNITS, THEORIES, PICTURES)
+    for table in (NAMES, VALUES, RUNS, COMBINED, UNKNOWN, UNITS, THEORIES, PICTURES)
     for line in table.strip().splitlines()
 ]
 

@@ -5,9 +5,8 @@ import pytest
 import xarray as xr
 from small_sweeps import AtOnce, sweep
 
-from crazybilliards.comparison import combine, load_sweep, overlay, smooth
+from crazybilliards.comparison import combine, load_sweep, smooth
 from crazybilliards.comparison.sweeps import run_cases
-from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain, load, save
 from crazybilliards.particles import simulate
 
@@ -66,7 +65,6 @@ def test_a_combined_density_is_smoothed_with_its_error(runs):
     )
     expected = np.sqrt(np.sum([run.density_error**2 for run in each], axis=0)) / 3
     np.testing.assert_allclose(found.density_error, expected, atol=1e-12)
-    overlay({"mean": found, "one": each[0]})
 
 
 @pytest.mark.parametrize("place", [0, 1, 2])
@@ -103,24 +101,3 @@ def test_a_sweep_over_seeds(tmp_path):
         for name in ("velocity_width", "velocity_width_error", "displacement_width"):
             here = found[name].sel(size=size).values[:size]
             np.testing.assert_allclose(here, alone[name], rtol=1e-9)
-
-
-def test_what_cannot_be_combined_is_refused(runs):
-    one, two = runs[:2]
-    gap = simulate(CHAIN.replace(gap=0.4), duration=20, seed=8, **QUIET)
-    some = simulate(CHAIN, duration=20, seed=8, particles=[1, 2], **QUIET)
-    widths = simulate(CHAIN, duration=20, seed=8, observe="widths", **QUIET)
-    for wrong, said in (
-        ([one, gap], "of one chain, got .*gap=0.3.* and .*gap=0.4"),
-        ([one, one], "other seeds, got 0 twice"),
-        ([one, some], "have the same normalized_particle|have the same particle"),
-        ([one, widths], "no 'density'"),
-        ([one, equilibrium(CHAIN)], "takes results of simulate|has no"),
-        ([smooth(one), smooth(two)], "before their densities are smoothed"),
-        ([one, 3], "not a crazybilliards result: 3"),
-        (one, "runs must be a list of results, .* got a Dataset"),
-        ([], "runs must be a list"),
-        (3, "runs must be a list"),
-    ):
-        with pytest.raises(ValueError, match=said):
-            combine(wrong)
