@@ -5,10 +5,8 @@ import pytest
 from scipy.stats import laplace, norm
 
 from crazybilliards.comparison import fit_arctanh, fit_border_power_law
-from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
-from crazybilliards.particles import simulate
 from crazybilliards.reproduction.fits import (
     fit_avalanches,
     fit_exponential,
@@ -207,33 +205,6 @@ def test_weighted_widths_count_by_their_errors():
     assert abs(fit_border_power_law(profile(width, error)).exponent + 0.5) > 0.01
 
 
-@pytest.mark.parametrize(
-    ("width", "message"),
-    [
-        ([0.3, 0.2, 0.2, 0.3], "at least 5"),
-        ([0.3, 0.2, np.nan, 0.2, 0.3], "positive widths"),
-        ([0.3, 0.2, 0.0, 0.2, 0.3], "positive widths"),
-        (np.full(50, 0.3), "no power law fits"),  # e = 1
-        (power_laws(50, 0.3, 0.5, 0.0), "no power law fits"),  # a concave profile
-    ],
-)
-def test_widths_that_two_power_laws_do_not_fit(width, message):
-    with pytest.raises(ValueError, match=message):
-        fit_border_power_law(profile(width))
-    with pytest.raises(ValueError, match="all particles"):
-        fit_border_power_law(profile(np.ones(9)).isel(particle=[1, 2]))
-
-
-@pytest.mark.compiled
-def test_the_dissipative_chain_follows_a_power_law_from_its_borders():
-    """L = 300, e = 0: nu = -0.46, as in the paper. The run tells nu to 0.012."""
-    chain = Chain(size=300, restitution=0)
-    run = simulate(chain, duration=600, time_step=1e-3, observe="widths", progress=False)
-    fit = fit_border_power_law(run)
-    assert fit.exponent == pytest.approx(-0.46, abs=0.06)
-    assert fit.misfit < 0.03
-
-
 # -- arctanh -----------------------------------------------------------------------------------
 
 
@@ -249,19 +220,3 @@ def test_the_fit_recovers_an_arctanh():
     assert fit.misfit < 1e-6
     assert fit.support == (-1 / fit.steepness, 1 / fit.steepness)
     np.testing.assert_allclose(fit(chain.anchors + mean), mean, atol=1e-5)
-
-
-def test_the_fit_of_the_reference_chain():
-    """Against the closure by labels at L = 100, g = 0: B/s and 1/C for A = 10."""
-    chain = Chain(amplitude=10)
-    fit = fit_arctanh(force_balance(chain))
-    assert fit.scale / chain.thermal_length == pytest.approx(1.41, abs=0.02)
-    assert 1 / fit.steepness == pytest.approx(123.4, abs=1)
-    assert fit.scale_error < 0.02 * fit.scale
-    assert fit.misfit < 0.05 * chain.thermal_length
-
-
-def test_a_chain_that_is_pulled_inwards_has_no_arctanh():
-    inward = equilibrium(Chain(size=5))
-    with pytest.raises(ValueError, match="not displaced outward"):
-        fit_arctanh(inward.assign(mean_displacement=-0.1 * inward.mean_displacement))

@@ -45,18 +45,9 @@ def test_common_parameters_need_not_be_a_chain_alone():
     few = cb.Sweep({"size": [2, 3]}, chain={"box": 7})
     walls = cb.Sweep({"box": [7, 9], "size": [2]}, chain={"wall_restitution": 0.5})
     assert [case.chain.box for case in [*few, *walls]] == [7, 7, 7, 9]
+    assert len(few) == len(walls) == 2
     with pytest.raises(ValueError, match="box must be above 8"):
         cb.Sweep({"size": [2, 4]}, chain={"box": 7}).cases()
-
-
-def test_a_sweep_gives_the_cases_of_its_grid():
-    sweep = cb.Sweep({"size": [3, 4], "seed": [1, 2, 3]}, "simulate", {"gap": 1}, {"duration": 100})
-    assert len(sweep) == 6
-    assert [*sweep] == [
-        Case("simulate", cb.Chain(size=size, gap=1), {"duration": 100, "seed": seed})
-        for size in (3, 4)
-        for seed in (1, 2, 3)
-    ]
 
 
 def test_only_errors_of_rounding_are_taken_away():

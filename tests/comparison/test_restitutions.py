@@ -1,6 +1,7 @@
 """Simulation against the theory that a chain has: which one, what comes out, and the pictures."""
 
 import re
+from itertools import product
 
 import numpy as np
 import pytest
@@ -85,12 +86,14 @@ def test_a_theory_is_a_line_in_a_band_of_the_error_that_it_states(tree):
 
 
 def test_pictures(tree):
+    """Also those of simulations alone."""
     titles = {TITLES[name] for name in (SIMULATION, GAS)}
-    for draw in (draw_density, draw_displacement):
-        figure = draw(tree)
-        above, *_, below = figure.get_axes()
+    alone = tree.filter(lambda node: node.name != GAS)
+    for draw, shown in product((draw_density, draw_displacement), (tree, alone)):
+        above, *_, below = draw(shown).get_axes()
         assert "e = 0.9" in above.get_title(loc="left")
-        assert set(below.get_legend_handles_labels()[1]) == titles
+        drawn = titles if shown is tree else {TITLES[SIMULATION]}
+        assert set(below.get_legend_handles_labels()[1]) == drawn
         assert not below.lines[0].get_ydata().any()  # the simulation, from which others differ
     widths = draw_widths(tree)
     assert widths.axes[0].get_ylabel() == "velocity width $W_v/W$"
