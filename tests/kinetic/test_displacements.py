@@ -47,9 +47,19 @@ def damping(correlation):
     return curve_fit(oscillation, times, correlation / correlation[0], p0=(0.3, 1, 0.3))[0][0]
 
 
-def predicted(chain):
-    """Return the damping of the waves 1 and 2 in the linear equation with the stress."""
-    size = chain.size
+@pytest.mark.compiled
+@pytest.mark.validate
+def test_long_waves_are_damped_as_in_a_simulation():
+    """Without the relaxing stress the damping is too small by a quarter."""
+    size = 100
+    chain = Chain(size=size, restitution=0.4)
+    run = simulate(
+        chain, duration=12_000, every=STEP, seed=3, observe="snapshots", threads=1, progress=False
+    )
+    moved = waves_of(run.position.values[0] - run.position.values[0].mean(axis=0))
+    lagged = [(moved[: len(moved) - lag] * moved[lag:]).mean(axis=0) for lag in range(NUMBER)]
+    simulated = [damping(each) for each in np.transpose(lagged)]
+    # The linear equation with the stress.
     found = in_agreement(chain, make_cells(size))
     response, _ = relaxing_pairs(found.fluctuations.background)
     h = response.stationary()
@@ -63,18 +73,7 @@ def predicted(chain):
     states = [waves_of(h[:, :size])]
     for _ in range(NUMBER - 1):
         states.append(step @ states[-1])
-    return [damping(np.array([waves_of(each[:size].T)[q, q] for each in states])) for q in (0, 1)]
-
-
-@pytest.mark.compiled
-@pytest.mark.validate
-def test_long_waves_are_damped_as_in_a_simulation():
-    """Without the relaxing stress the damping is too small by a quarter."""
-    chain = Chain(size=100, restitution=0.4)
-    run = simulate(
-        chain, duration=12_000, every=STEP, seed=3, observe="snapshots", threads=1, progress=False
-    )
-    moved = waves_of(run.position.values[0] - run.position.values[0].mean(axis=0))
-    lagged = [(moved[: len(moved) - lag] * moved[lag:]).mean(axis=0) for lag in range(NUMBER)]
-    simulated = [damping(each) for each in np.transpose(lagged)]
-    np.testing.assert_allclose(predicted(chain), simulated, rtol=0.15)
+    predicted = [
+        damping(np.array([waves_of(each[:size].T)[q, q] for each in states])) for q in (0, 1)
+    ]
+    np.testing.assert_allclose(predicted, simulated, rtol=0.15)

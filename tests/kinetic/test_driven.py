@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from crazybilliards.kinetic import steady_state
-from crazybilliards.kinetic.gas.driven import _Equation, driven_points
+from crazybilliards.kinetic.gas.driven import driven_points
 from crazybilliards.model import Chain
 
 
@@ -49,12 +49,6 @@ def test_long_driven_chains_are_hottest_at_their_ends():
     )
     assert long[0] > 1.05 * long[49]
     assert short[0] < 0.98 * short[24]
-
-
-def test_without_collisions_the_points_are_a_gaussian():
-    equation = _Equation(0.7, 0.0)
-    changes = equation.newton_step(equation.gaussian, 1.0, 0.0)
-    assert max(np.abs(change).max() for change in changes) < 1e-6
 
 
 def test_just_above_1_the_heat_flux_carries_what_noise_and_collisions_bring():

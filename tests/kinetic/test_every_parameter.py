@@ -209,6 +209,7 @@ def test_an_observer_refuses_what_it_does_not_know_unless_it_only_averages(
 ):
     box = narrow_box(3, 1.0) if OBSERVERS[name].meets_walls else 0.0
     chain = Tilted(size=3, restitution=0.8, tilt=1.0, box=box)
+    assert Observer.reads_chain, "an observer of one's own refuses it as well"
     a_run(chain, observe="widths")
     if not OBSERVERS[name].reads_chain:
         a_run(chain, observe=name)
@@ -225,6 +226,9 @@ def test_what_is_asked_outside_of_a_run_refuses_it():
         relaxation_time(chain)
     with pytest.raises(ValueError, match="a start does not know the chain's tilt"):
         given_start(chain, chain.anchors)
+    require_chain(chain, "a theory", knows={"tilt"})
+    with pytest.raises(ValueError, match="another theory does not know the chain's tilt"):
+        require_chain(chain, "another theory", knows={"push"})
 
 
 def test_what_reads_the_chain_of_a_result_refuses_a_field_that_not_all_know(monkeypatch):
@@ -235,11 +239,3 @@ def test_what_reads_the_chain_of_a_result_refuses_a_field_that_not_all_know(monk
     for reader, result in ((cb.film, run), (cb.rod_by_rod, theory)):
         with pytest.raises(ValueError, match=f"{reader.__name__} does not know the chain's gap"):
             reader(result)
-
-
-def test_a_theory_says_by_itself_what_it_knows():
-    assert Observer.reads_chain, "an observer of one's own refuses it as well"
-    chain = Tilted(size=3, tilt=1.0)
-    require_chain(chain, "a theory", knows={"tilt"})
-    with pytest.raises(ValueError, match="another theory does not know the chain's tilt"):
-        require_chain(chain, "another theory", knows={"push"})

@@ -125,13 +125,6 @@ def test_a_gas_between_walls_has_the_waves_of_one_that_is_its_own_mirror_image()
     np.testing.assert_allclose(fields @ within, change, atol=1e-9 * np.abs(change).max())
 
 
-def test_elastic_rods_are_not_correlated():
-    state = some_state(40, restitution=1.0)
-    state = state._replace(shared=0 * state.shared)
-    for each in covariances(state, linear_response(state))[1:]:
-        np.testing.assert_array_equal(each, 0)
-
-
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 0.9])
 def test_a_collision_takes_its_share_of_the_force(restitution):
     """Lambda = (1 - e) P <w^2>/<w>, by sampling the pairs that meet: Gaussians, slower by K."""

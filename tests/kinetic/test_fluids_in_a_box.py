@@ -9,13 +9,7 @@ from scipy.linalg import expm
 from scipy.stats import truncnorm
 
 from crazybilliards import deviation, smooth
-from crazybilliards.kinetic import (
-    UnmeasuredWarning,
-    equilibrium,
-    force_balance,
-    hydrodynamics,
-    rod_by_rod,
-)
+from crazybilliards.kinetic import equilibrium, force_balance, hydrodynamics, rod_by_rod
 from crazybilliards.kinetic.fluids.one_mass import wave_model_error
 from crazybilliards.kinetic.gas.collision_moments import decay_of_two_masses
 from crazybilliards.model import Chain
@@ -220,11 +214,3 @@ def test_a_fluid_of_equal_rods_says_how_wrong_it_is():
     assert flow.attrs["wave_model_error"] < 0.02
     two = gas(0.2 * k, mass_ratio=3.0)
     assert "wave_model_error" not in hydrodynamics(two, waved(two, 0.02), **once).attrs
-
-
-def test_with_a_gap_on_springs_the_error_of_a_fluid_in_a_box_is_not_known():
-    chain = in_a_box(14.0, size=8, gap=2.0, amplitude=0.5)
-    with pytest.warns(UnmeasuredWarning):
-        fluid = force_balance(chain)
-    assert np.isnan(fluid.attrs["density_model_error"])
-    assert deviation(smooth(fluid), smooth(equilibrium(chain))).maximum > 0.3

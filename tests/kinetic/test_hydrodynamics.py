@@ -2,17 +2,15 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 from pde import MemoryStorage
 
 from crazybilliards.kinetic import compressed, displaced, equilibrium, force_balance, hydrodynamics
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
 from crazybilliards.kinetic.fluids import eulerian_frame
 from crazybilliards.model import Chain
-from crazybilliards.model.vocabulary import result
 
 QUIET = {"progress": False}
-# What hydrodynamics takes as velocity_variance for its two fluids.
-FLUIDS = pytest.mark.parametrize("fluid", [None, "evolving"], ids=["isothermal", "evolving"])
 
 
 def density_on(flow, x):
@@ -105,7 +103,7 @@ def test_the_eulerian_frame_rests_in_the_force_balance(amplitude, gap):
 
 
 @pytest.mark.compiled
-@FLUIDS
+@pytest.mark.parametrize("fluid", [None, "evolving"], ids=["isothermal", "evolving"])
 def test_the_eulerian_frame_is_of_second_order(fluid):
     """L1 distance to the label frame, which is exact for a breathing cloud."""
     chain = Chain(size=100, amplitude=10)
@@ -173,27 +171,21 @@ def test_a_number_is_the_velocity_variance_of_the_isothermal_fluid(frame):
     assert np.abs(expected.cloud_width / chain.thermal_length - 1)[-1] > 0.1
 
 
-def shock_tube(chain):
-    """Return rods of the density 0.6 to the left of 0, and 0.2 to the right of it."""
-    ends = -chain.size / 2 / 0.6, chain.size / 2 / 0.2
-    x = np.linspace(ends[0] - 5, ends[1] + 5, 20_001)
-    left, middle, right = (np.tanh((x - place) / 0.5) for place in (ends[0], 0.0, ends[1]))
-    density = 0.3 * (left - middle) + 0.1 * (middle - right)
-    density *= chain.size / np.trapezoid(density, x)
-    return result(
-        chain, {"density": ("x", density)}, source="theory", method={}, coordinates={"x": x}
-    )
-
-
 @pytest.mark.compiled
 def test_a_shock_does_not_depend_on_a_very_soft_spring():
-    """The cells resolve the rods and the waves, which are short against the thermal length."""
+    """The cells resolve the rods and the waves, which are short against the thermal length.
+
+    A shock tube: rods of the density 0.6 to the left of 0, and 0.2 to the right of it.
+    """
     damping = 1e-4
     chain = Chain(size=60, radius=0.5, mass=1.0, stiffness=1e-5, damping=damping)
     chain = chain.replace(amplitude=np.sqrt(2 * damping))
-    flow = hydrodynamics(
-        chain, shock_tube(chain), 10, every=10, velocity_variance=1.0, frame="eulerian", **QUIET
-    ).isel(time=-1)
+    x = np.linspace(-55, 155, 20_001)
+    left, middle, right = (np.tanh((x - place) / 0.5) for place in (-50, 0, 150))
+    density = 0.3 * (left - middle) + 0.1 * (middle - right)
+    start = xr.Dataset({"density": ("x", 60 * density / np.trapezoid(density, x))}, {"x": x})
+    how = {"every": 10, "velocity_variance": 1.0, "frame": "eulerian"} | QUIET
+    flow = hydrodynamics(chain, start, 10, **how).isel(time=-1)
     behind = (flow.x > 1) & (flow.x < 4)
     assert float(flow.flow_velocity[behind].median()) == pytest.approx(0.908, abs=0.01)
     assert float(flow.density[behind].median()) == pytest.approx(0.378, abs=0.005)

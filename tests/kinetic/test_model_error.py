@@ -110,10 +110,11 @@ def test_the_force_balance_states_its_density_and_its_displacements():
     ]
     assert errors[1:] == pytest.approx([0.138, 0.132, 0.099, 0.027, 0.007, 0.007], abs=1e-3)
     assert np.isnan(errors[0])
-    assert np.isnan(force_balance(Chain(gap=8.0)).attrs["density_model_error"])
     assert np.isnan(force_balance(Chain(), velocity_variance=2.0).attrs["density_model_error"])
-    for size in (1, 2000):
-        assert np.isnan(force_balance(Chain(size=size)).attrs["density_model_error"])
+    boxed = Chain(size=8, amplitude=0.5, box=30, gap=2.0)
+    for chain in (Chain(gap=8.0), boxed, Chain(size=1), Chain(size=2000)):
+        assert np.isnan(force_balance(chain).attrs["density_model_error"])
+    assert force_balance(boxed.replace(gap=0)).attrs["density_model_error"] > 0
 
 
 @pytest.mark.parametrize(("size", "gap"), [(3, 0.2), (30, 0.0), (30, 2.0), (60, 0.2)])
