@@ -17,19 +17,16 @@ def test_on_linear_springs_it_is_that_of_the_slowest_mode(damping):
     assert relaxation_time(chain) == pytest.approx(1 / np.abs(roots.real).min())
 
 
-def slowest_rate():
-    """Rate of the slowest mode of z' = -z|z| + sqrt(2) xi, by finite differences."""
+def test_strongly_damped_quadratic_springs_relax_by_diffusion():
+    """With the slowest mode of z' = -z|z| + sqrt(2) xi, by finite differences."""
     edges = np.linspace(-4.5, 4.5, 2001)
     z, h = (edges[1:] + edges[:-1]) / 2, edges[1] - edges[0]
     weight, between = np.exp(-(np.abs(z) ** 3) / 3), np.exp(-(np.abs(edges[1:-1]) ** 3) / 3)
     diagonal = (np.append(between, 0) + np.append(0, between)) / weight / h**2
     beside = -between / np.sqrt(weight[1:] * weight[:-1]) / h**2
-    return eigh_tridiagonal(diagonal, beside, select="i", select_range=(1, 1))[0][0]
-
-
-def test_strongly_damped_quadratic_springs_relax_by_diffusion():
+    [rate], _ = eigh_tridiagonal(diagonal, beside, select="i", select_range=(1, 1))
     chain = Chain(size=1, spring="quadratic", damping=1e4, amplitude=200.0, stiffness=2.0)
-    expected = chain.damping / (chain.stiffness * chain.thermal_length * slowest_rate())
+    expected = chain.damping / (chain.stiffness * chain.thermal_length * rate)
     assert relaxation_time(chain) == pytest.approx(expected, rel=1e-3)
 
 
