@@ -92,6 +92,12 @@ def test_the_stated_error_covers_the_measured_change():
             assert stated(e, r) - stated(e, shorter) < 2 * abs(change) + 3 * error
 
 
+@pytest.mark.parametrize(("r", "error"), [(1.038, 7.3), (1.162, 13.7)])
+def test_the_stated_error_of_a_long_step_is_that_of_the_true_width(r, error):
+    """20 rods at 10 and 14 default steps, against another program at a tenth of a step (+- 0.2)."""
+    assert error < stated(0.5, r) < 1.3 * error
+
+
 @pytest.mark.parametrize("method", ["event-driven", "contact-dynamics"])
 def test_a_single_rod_has_no_error_of_collisions(method):
     chains = [Chain(size=1, restitution=e, gap=gap) for e, gap in ((0, 0), (0.5, 2), (1.2, 0))]
@@ -106,4 +112,5 @@ def test_where_no_error_is_stated():
     """At restitution one there is none, and of other methods nobody measured it."""
     assert stated(1.0, 5.0) == 0
     assert stated(1 - 1e-9, 0.3) < 0.05
+    assert stated(0.5, 1.3) == math.inf  # no true width belongs to this one
     assert math.isnan(time_step_error(Chain(size=30, restitution=0.8), 0.1, 0.3, method="my own"))
