@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from independent_points import rods_of_independent_points
 from scipy.special import ndtr
 
 from crazybilliards.kinetic import force_balance, hydrodynamics, steady_state
@@ -46,6 +47,20 @@ def test_it_is_where_the_gas_in_time_comes_to_rest(size, restitution, monkeypatc
     np.testing.assert_allclose(T * chain.free_velocity_width**2, expected, rtol=0.01)
     energy = chain.mass / 2 * chain.free_velocity_width**2 * T.sum()
     assert energy == pytest.approx(float(end.kinetic_energy), rel=2e-3)
+
+
+@pytest.mark.validate
+def test_it_is_that_of_simulated_independent_points():
+    chain = Chain(size=20, restitution=0.7)
+    place, T, error = rods_of_independent_points(
+        20, 0.7, chain.relative_damping, number=6000, duration=100, warmup=20, seed=1
+    )
+    found, own = mean_field(chain)
+    off, error = np.sqrt(own / T) - 1, error / T / 2
+    assert error.max() < 0.01
+    assert (np.abs(off) < 5 * error + 0.03)[2:-2].all()
+    assert abs(off[0]) < 5 * error[0] + 0.06
+    np.testing.assert_allclose(found, place, atol=0.02)
 
 
 def test_few_rods_and_driven_ones_have_it_always():
