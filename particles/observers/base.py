@@ -72,7 +72,7 @@ class Observer(ABC):
         Whether it reads more of the chain than the places of its anchors. It then refuses a chain
         with a new parameter. One that only averages ``y`` and ``v`` says False.
     knows
-        New parameters with which it is right all the same; see ``add_a_chain_parameter``.
+        New parameters with which it is right all the same; see *Extend the package*.
     """
 
     name: ClassVar[str]

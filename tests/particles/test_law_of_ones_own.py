@@ -7,7 +7,7 @@ import sys
 import pytest
 from installation import FOLDERS, ROOT, run
 
-PAGE = ROOT / "docs" / "howto" / "add_a_collision_operator.md"
+PAGE = ROOT / "docs" / "howto" / "extend.md"
 TRY = """
 import math
 import crazybilliards as cb
