@@ -78,9 +78,8 @@ def position_grid(chain: Chain, reach: float | None = None) -> NDArray[np.float6
     require_resolved(chain, half_width)
     spacing = 2 * chain.radius / bins_per_rod(chain, reach)
     half = math.ceil(half_width / spacing)
-    require_memory(
-        f"size={chain.size}: a grid of {2.0 * half:.3g} positions", 2.0 * half * _BYTES_PER_NODE
-    )
+    of_what = f"{2.0 * half:.3g} positions, {spacing:.3g} apart, from {-half_width:.3g} R on"
+    require_memory(f"size, radius or stiffness: a grid of {of_what}", 2.0 * half * _BYTES_PER_NODE)
     return spacing * np.arange(-half, half + 1.0)
 
 

@@ -96,7 +96,7 @@ class Run:
         _ = self.starts
         sums = self.groups * sum(observer.memory(self) for observer in self.observers)
         names = ", ".join(observer.name for observer in self.observers)
-        few = "ask for fewer particles, replicas or times"
+        few = "ask for less, such as 'widths' alone, or fewer particles, replicas or times"
         require_memory(f"observe ({few}): {names}", states + _CHUNKS + _COPIES * sums)
 
     def _require_known(self) -> None:

@@ -97,7 +97,10 @@ def choose_step(
             f"{_MOST_SHORT_STEPS} may be shorter than {needed / _MOST_SHORTENED:.3g}"
         )
     if time / step > 1e15:
-        raise ValueError(f"time_step {step:g} is too small for {time:g} time units")
+        raise ValueError(
+            f"warm-up and duration, {time:g} t_0, would take {time / step:.1g} steps of {step:g}: "
+            "give less of both or, where every step is right, every"
+        )
     return step, stride
 
 
