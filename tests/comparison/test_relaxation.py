@@ -35,7 +35,7 @@ def columns_without_numbers(figure):
 
 @pytest.fixture(scope="module")
 def tree():
-    how = {"duration": 10, "every": 1, "replicas": 300, "progress": False}
+    how = {"duration": 10, "every": 1, "replicas": 1000, "progress": False}
     return compare_relaxation(Chain(size=20, amplitude=20), "compressed", 0.3, **how)
 
 
