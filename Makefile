@@ -175,6 +175,7 @@ INSTALL := $(BIN)/uv --system-certs pip install --quiet --python $(BIN)/python -
 
 $(BIN)/uv:
 	@$(CHECK_PYTHON)
+	@echo "installing everything into $(VENV), for some minutes the first time ..."
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -qq uv
 
@@ -188,6 +189,7 @@ $(VENV)/installed-%: pyproject.toml $(BIN)/uv | $(LINKS)
 
 $(OLDEST)/installed: pyproject.toml
 	@$(CHECK_PYTHON)
+	@echo "installing the oldest packages into $(OLDEST), for some minutes ..."
 	$(PYTHON) -m venv $(OLDEST)
 	$(OLDEST)/bin/python -m pip install --quiet --upgrade pip setuptools uv
 	$(OLDEST)/bin/uv --system-certs pip install --quiet --python $(OLDEST)/bin/python --resolution lowest-direct \

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
+import numpy as np
 import xarray as xr
 
+from crazybilliards.model.arrays import check_numbers
+from crazybilliards.model.checks import shown
 from crazybilliards.model.vocabulary import chain_of, require, unit_of
 
 _RAISED = re.compile(r"([_^])(-?[\d.]+|[a-z](?:\+\w)?)(?![a-z])")
@@ -51,13 +55,37 @@ class Curve(NamedTuple):
     measured: bool
 
 
-def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Curve:
-    """Return a quantity of a result as a curve; ``along`` is the abscissa of the particles.
+def find_curves(results: Mapping[str, Any], quantity: str, along: str) -> dict[str, Curve]:
+    """Return a quantity of results, and of data of the reader's own, as curves by their labels.
 
-    Raise a ValueError if the result, which the message calls ``label``, lacks the quantity, or has
-    it over several dimensions.
+    ``along`` is the abscissa of the particles; columns have that of the other curves. Raise a
+    ValueError if one lacks the quantity, or has it over several dimensions.
     """
-    if quantity == "velocity_density":
+    curves: dict[str, Curve] = {}
+    abscissa = "x"
+    for label in sorted(results, key=lambda label: not isinstance(results[label], xr.Dataset)):
+        dataset = _as_dataset(label, results[label], quantity, abscissa)
+        curves[label] = _find_curve(label, dataset, quantity, along)
+        abscissa = str(curves[label].abscissa.name)
+    return {label: curves[label] for label in results}
+
+
+def _as_dataset(label: str, data: Any, quantity: str, abscissa: str) -> xr.Dataset:
+    """Return a result as it is, and a DataArray or two columns as a Dataset."""
+    if isinstance(data, xr.Dataset):
+        return data
+    if isinstance(data, xr.DataArray):
+        return data.to_dataset(name=quantity)
+    try:
+        x, values = (check_numbers(label, column) for column in data)
+        return xr.Dataset({quantity: (abscissa, values)}, {abscissa: x})
+    except (TypeError, ValueError) as error:
+        known = f"a result, a DataArray or two columns of numbers ({abscissa}, {quantity})"
+        raise ValueError(f"{label}: overlay takes {known}, got {shown(data)}") from error
+
+
+def _find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Curve:
+    if quantity == "velocity_density" and "provenance" in dataset.attrs:
         dataset = _of_any_rod(dataset)
     require(dataset, (quantity,))
     values = dataset[quantity]
@@ -71,16 +99,32 @@ def find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Cu
     others = {"x_index": "x", "contact": "normalized_contact", "particle": along}
     abscissa = others.get(dimension, dimension)
     require(dataset, (abscissa,))
+    for name in (abscissa, quantity) if "source" not in dataset.attrs else ():
+        if not np.isfinite(check_numbers(f"{label}: {name}", dataset[name])).any():
+            raise ValueError(f"{label}: {name} has no number that could be drawn")
     if dimension == "velocity_bin":  # the outer bins are empty
         values = values.where(values > 0)
     error = dataset.get(f"{quantity}_error")
-    return Curve(dataset[abscissa], values, error, dataset.attrs.get("source") == "simulation")
+    measured = dataset.attrs.get("source", "simulation" if error is not None else "")
+    return Curve(dataset[abscissa], values, error, measured == "simulation")
+
+
+def shared_label(variables: Mapping[str, xr.DataArray]) -> str:
+    """Return the label of an axis of several curves; ValueError if they need different ones."""
+    names = {label: str(each.name) for label, each in variables.items()}
+    units = {label: unit_of(each) for label, each in variables.items() if "units" in each.attrs}
+    for different in (names, units):
+        if len(set(different.values())) > 1:
+            listed = "; ".join(f"{label}: {each}" for label, each in different.items())
+            raise ValueError(f"curves of one picture need the same axes, got {listed}")
+    return axis_label(variables[next(iter(units or names))])
 
 
 def axis_label(variable: xr.DataArray) -> str:
     """Return the name and the unit of a variable, with indices and powers set as in print."""
-    name = _LABELS.get(str(variable.name), variable.attrs["long_name"])
-    return _set(name) + (f" [{unit_label(variable)}]" if unit_of(variable) != "1" else "")
+    name = variable.attrs.get("long_name", str(variable.name))
+    unit = unit_label(variable) if variable.attrs.get("units", "1") != "1" else ""
+    return _set(_LABELS.get(str(variable.name), name)) + (f" [{unit}]" if unit else "")
 
 
 def unit_label(variable: xr.DataArray) -> str:

@@ -14,8 +14,8 @@ from matplotlib.container import ErrorbarContainer
 from numpy.typing import ArrayLike
 
 from crazybilliards.comparison.coverage import require_same_smoothing
-from crazybilliards.comparison.curves import axis_label, find_curve
-from crazybilliards.model.checks import check_choice
+from crazybilliards.comparison.curves import find_curves, shared_label
+from crazybilliards.model.checks import check_choice, shown
 
 Along = Literal["normalized_particle", "mean_position"]
 
@@ -29,7 +29,7 @@ _ALL, _SOME = 60, 30  # symbols of a curve: so many values are all drawn, of mor
 
 
 def overlay(
-    results: Mapping[str, xr.Dataset],
+    results: Mapping[str, xr.Dataset | xr.DataArray | tuple[ArrayLike, ArrayLike]],
     quantity: str = "density",
     *,
     along: Along = "normalized_particle",
@@ -43,7 +43,10 @@ def overlay(
     results
         ``{label: result}``. Simulations are drawn as symbols with their standard errors, theories
         as lines, in the order given and in the colours of the current style. Of more than 60 values
-        all are drawn as a thin line, and evenly spaced ones also as symbols.
+        all are drawn as a thin line, and evenly spaced ones also as symbols. Data of your own, in
+        the same units, are a Dataset or a DataArray with a coordinate of the same name, or two
+        columns such as ``(x, density)``: lines, and symbols if a Dataset has DENSITY_error, say.
+        Whether they are smoothed like the results is not known.
     quantity
         A variable over one dimension, such as x, time, particle, mode or velocity. Densities must
         be smoothed all or not at all. ``velocity_density`` is that of a rod picked at random, the
@@ -60,9 +63,9 @@ def overlay(
     Raises
     ------
     ValueError
-        If ``results`` are not given by labels, if one lacks the quantity, or has it over several
-        dimensions: one time of a density over time and x must be chosen first. If ``style`` names
-        no result.
+        If ``results`` are not given by labels, if one lacks the quantity, has it in another unit
+        or over another or several dimensions: one time of a density over time and x must be chosen
+        first. If ``style`` names no result.
 
     Returns
     -------
@@ -70,16 +73,20 @@ def overlay(
         The axes, without a legend; call its ``legend()``.
     """
     # A Dataset and a tree of them are mappings, too.
-    if not isinstance(results, Mapping) or isinstance(results, xr.Dataset | xr.DataTree):
+    if isinstance(results, xr.Dataset | xr.DataTree) or not (
+        isinstance(results, Mapping) and results
+    ):
         raise ValueError(
             "overlay takes results by their labels, e.g. {'simulation': run, 'theory': theory}, "
-            f"got a {type(results).__name__}"
+            f"got {shown(results)}"
         )
     check_choice("along", along, get_args(Along))
-    curves = {
-        label: find_curve(label, result, quantity, along) for label, result in results.items()
-    }
-    _require_same_kind(results, quantity)
+    curves = find_curves(results, quantity, along)
+    abscissas = {label: curve.abscissa for label, curve in curves.items()}
+    ordinates = {label: curve.values for label, curve in curves.items()}
+    names = {"xlabel": shared_label(abscissas), "ylabel": shared_label(ordinates)}
+    ours: Any = {n: each for n, each in results.items() if "source" in getattr(each, "attrs", {})}
+    _require_same_kind(ours, quantity)
     style = style or {}
     for label in style:
         check_choice("style: a label", label, results)
@@ -96,7 +103,11 @@ def overlay(
             draw_measured(ax, abscissa.values, values.values, spread, **look)
         else:
             ax.plot(abscissa, values, **{"linestyle": next(dashes)} | how)
-        ax.set(xlabel=axis_label(abscissa), ylabel=axis_label(values))
+    ax.set(**names)
+    least = min(np.fmin.reduce(each.values, initial=np.inf) for each in ordinates.values())
+    if quantity.endswith("density") and least >= 0 and ax.get_autoscaley_on():
+        low, high = ax.get_ylim()
+        ax.set_ylim(max(low, 0.0), high, auto=None)  # the margin and error bars reach below 0
     return ax
 
 
@@ -120,16 +131,20 @@ def draw_measured(
     """Draw measured values as symbols with error bars.
 
     Of more than 60 all are drawn as a thin line, and every second, third or so on as a symbol. The
-    symbols are evenly spaced; make an axis logarithmic before. ``how``: keywords of ``errorbar``.
+    symbols are evenly spaced; make an axis logarithmic before. The line is pale beside symbols, so
+    that noise hides nothing. ``how``: keywords of ``errorbar``.
     """
     count = np.size(x)
     look: dict[str, Any] = {"linestyle": "none", "linewidth": 0.7, "markerfacecolor": "none"}
     if count > _ALL:
-        shown = np.arange(0, count, count // _SOME)
+        drawn = np.arange(0, count, count // _SOME)
         if ax.get_xscale() == "log":
-            shown = np.unique(np.geomspace(1, count, _SOME).round().astype(int)) - 1
-        look |= {"linestyle": "-", "markevery": list(shown), "errorevery": shown}
-    ax.errorbar(x, values, errors, **look | {"zorder": 1.8} | how)  # below the lines of theories
+            drawn = np.unique(np.geomspace(1, count, _SOME).round().astype(int)) - 1
+        look |= {"linestyle": "-", "markevery": list(drawn), "errorevery": drawn}
+    look |= {"zorder": 1.8} | how  # below the lines of theories
+    [line, *_] = ax.errorbar(x, values, errors, **look).lines
+    if count > _ALL and line.get_marker() != "none":
+        line.set(markeredgecolor=line.get_markeredgecolor(), color=(line.get_color(), 0.4))
 
 
 def draw_rods(

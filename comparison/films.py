@@ -87,7 +87,7 @@ def film(
     springs
         Also draw the anchors, and a line from each to its rod; not of a relaxation.
     progress
-        Show a progress bar, on a terminal or in a notebook.
+        Show a progress bar, on a terminal or in a notebook, elsewhere a line every half minute.
 
     Returns
     -------

@@ -1,7 +1,8 @@
 """How pictures are laid out: in one style, one or two columns of a journal wide, panels lettered.
 
 ``plt.style.use("crazybilliards.comparison.figures")`` gives other pictures the same style. Figures
-are made without pyplot, so no picture that is written to a file depends on the reader's backend.
+are made without pyplot, and without the settings of the reader. So no picture that is written to a
+file depends on his backend or his matplotlibrc.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from collections.abc import Iterable
 from contextlib import AbstractContextManager
 from typing import Any
 
-from matplotlib import style
+from matplotlib import rcParams, style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -19,8 +20,9 @@ ONE_COLUMN, TWO_COLUMNS = 3.4, 7.0  # widths of journals in inches
 
 
 def house_style() -> AbstractContextManager[None]:
-    """Draw in the style of the package, and save there as well: some of it acts only then."""
-    return style.context("crazybilliards.comparison.figures")
+    """Draw in the style of the package alone, and save there as well: some of it acts only then."""
+    ffmpeg = {"animation.ffmpeg_path": rcParams["animation.ffmpeg_path"]}  # a place, and no look
+    return style.context(["default", ffmpeg, "crazybilliards.comparison.figures"])
 
 
 def panels(

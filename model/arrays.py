@@ -14,9 +14,9 @@ def check_numbers(name: str, values: object) -> Array:
     """Return ``values`` as an array of floats, or raise a ValueError that names the argument."""
     refuse_units(name, values)
     try:
-        # numpy would make numbers of None, texts and dates, and of what lies under a mask.
+        # numpy would make numbers of None, texts, dates, complex ones, and what lies under a mask.
         kind = np.asarray(values).dtype.kind
-        if values is not None and kind not in "SUMm" and not np.ma.is_masked(values):
+        if values is not None and kind not in "SUMmc" and not np.ma.is_masked(values):
             return np.asarray(values, dtype=float)
     except (TypeError, ValueError, OverflowError):
         pass

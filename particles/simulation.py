@@ -128,8 +128,8 @@ def simulate(
         Ctrl-C, SIGTERM or SIGHUP. The same call again continues from there and gives the same
         bits. A checkpoint of another call, or one that another process is using, is refused.
     progress
-        Show a progress bar with the time left, on a terminal or in a notebook. A text stands in
-        front of it, to tell runs apart.
+        Show a progress bar with the time left, on a terminal or in a notebook, elsewhere a line
+        every half minute. A text stands in front of it, to tell runs apart.
 
     Returns
     -------

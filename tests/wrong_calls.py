@@ -170,6 +170,12 @@ cb.deviation(run, run) | not smoothed: take cb.smooth of both, or raw=True
 cb.overlay({"a": run.expand_dims(size=[1, 2])}) | density is over (size, x)
 cb.overlay({"run": run}, style={"rum": {}}) | style: ...got 'rum'; did you mean 'run'?
 cb.overlay(run) | overlay takes results by their labels...got a Dataset
+cb.overlay({}) | overlay takes results by their labels...got {}
+cb.overlay({"exact": exact, "mine": ([0, 1], [1, 2, 3])}) | mine: overlay takes...two columns
+cb.overlay({"exact": exact, "mine": foreign.rename(x="r")}) | same axes, got exact: x; mine: r
+cb.overlay({"mine": in_metres.drop_attrs(deep=False)}) | mine: density...not carry a unit
+cb.overlay({"mine": ([0, 1], [np.nan, np.nan])}) | mine: density has no number
+cb.overlay({"mine": foreign * 1j}) | mine: density must be numbers
 cb.film(exact) | run has no snapshots in time, which simulate(chain, observe='snapshots') records
 cb.film(snapshots.isel(particle=0)) | no snapshots in time
 cb.film(snapshots.drop_vars("velocity")) | no snapshots in time

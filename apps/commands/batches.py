@@ -113,19 +113,19 @@ def reproduce(
         return
     wanted = find_figures(which)
     formats = [] if vector is None else [vector]
-    files: dict[str, bytes] = {}
+    drawn, files = [], []
     with writing_to(output), _workers(processes, None) as executor:
         if cases := report.all_cases(wanted, quality):
             _end_if(run_cases(cases, output / "cases", executor))
-        drawn = list(report.reproduce(wanted, quality, output / "cases", formats=formats))
-        for figure in drawn:
+        for figure in report.reproduce(wanted, quality, output / "cases", formats=formats):
+            drawn.append(figure)
             for kind, content in figure.pictures.items():
-                files[f"{figure.study.stem}.{kind}"] = content
+                files.append(output / f"{figure.study.stem}.{kind}")
+                write_atomically(files[-1], content)
         if which in _PAGES:
-            files[_PAGES[which]] = report.markdown(drawn, quality).encode()
-        for name, content in files.items():
-            write_atomically(output / name, content)
-    _answer_claims(drawn, [str(output / name) for name in files], as_json)
+            files.append(output / _PAGES[which])
+            write_atomically(files[-1], report.markdown(drawn, quality).encode())
+    _answer_claims(drawn, list(map(str, files)), as_json)
 
 
 def _answer_claims(drawn: list[Reproduction], written: list[str], as_json: bool) -> None:

@@ -70,20 +70,27 @@ def conclude(
     """Write files, print the text or, as JSON, the facts, and end with the status for a shell.
 
     ``files``: what writes each file, by its name in the folder ``output``. Names get the status
-    unless the result is completed. Everything is printed even if a file cannot be written.
+    unless the result is completed. If one cannot be written the others are, everything is printed,
+    and then the first error is raised.
     """
-    status, written = result.attrs["status"], []
+    status, written, errors = result.attrs["status"], [], list[Exception]()
     suffix = "" if status == "completed" else f"-{status}"
     try:
         for name, write in files.items() if output else ():
             path = Path(output or "", name)
-            write(path.with_stem(path.stem + suffix))
-            written.append(str(path.with_stem(path.stem + suffix)))
+            path = path.with_stem(path.stem + suffix)
+            try:
+                write(path)
+                written.append(str(path))
+            except Exception as error:
+                errors.append(error)
     finally:
         lines = [f"wrote {path}" for path in written]
         if output is None:
             lines.append("Nothing was written; --output FOLDER keeps it.")
         answer(as_json, {"status": status, "written": written} | dict(facts), *text, *lines)
+    for first in errors:
+        raise first
     if status != "completed":
         raise typer.Exit(INTERRUPTED if status == "interrupted" else 1)
 

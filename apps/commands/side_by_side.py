@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from functools import partial
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, Literal
 
 from typer import Option
@@ -66,7 +67,7 @@ def compare(
 
     Example: crazybilliards compare --output results --restitution 0.9,0.95,0.98
     """
-    from crazybilliards.comparison.side_by_side import grid
+    from crazybilliards.comparison.side_by_side import grid, grid_figures
 
     amplitude = amplitude or ("1,3,10,30" if restitution is None else "1")
     values = {
@@ -85,14 +86,20 @@ def compare(
         rows = _deviations(over, tree)
         columns = {name: heading for name, heading in _COLUMNS.items() if name in (over, *rows[0])}
         shown = table(columns, rows, _CAPTION)
-        conclude(tree, output, _comparison_files(tree), as_json, {"deviations": rows}, shown)
+        conclude(
+            tree,
+            output,
+            _comparison_files(tree, grid_figures),
+            as_json,
+            {"deviations": rows},
+            shown,
+        )
 
 
-def _comparison_files(tree: xr.DataTree) -> dict[str, Any]:
+def _comparison_files(tree: xr.DataTree, figures: ModuleType) -> dict[str, Any]:
     """Return what writes the files of a comparison."""
     from xarray import DataTree
 
-    from crazybilliards.comparison.side_by_side import grid_figures as figures
     from crazybilliards.model import save
 
     # The data first: a failing picture must not cost the computation.

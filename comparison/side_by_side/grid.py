@@ -72,7 +72,7 @@ def compare(
     threads
         Threads to simulate in, in this process; None: one per core.
     progress
-        Show a progress bar, if standard error is a terminal.
+        Show a progress bar, if standard error is a terminal, otherwise a line every half minute.
 
     Returns
     -------

@@ -207,5 +207,6 @@ def draw_density_alone(theory: xr.Dataset, name: str) -> Figure:
     figure, [ax] = panels(1, 1)
     _draw_theory(ax, theory, "density", color=COLOURS[0], label=name)
     ax.set(xlabel=axis_label(theory.x), ylabel=axis_label(theory.density))
+    ax.set_ylim(bottom=0)
     ax.legend(loc="lower center")
     return figure

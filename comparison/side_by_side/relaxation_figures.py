@@ -20,7 +20,7 @@ from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.model import Chain, chain_of
 
 _NAMES = {PARTICLES: SIMULATION} | LEGEND
-_MOMENTS = (0.0, 0.05, 0.1, 1.0)  # of the duration, for the profiles
+_MOMENTS = np.array([0.0, 0.05, 0.1, 1.0])  # of the duration, for the profiles
 _LEAST_DRAWN = 2e-3  # of close packing: pictures end where every density is lower
 _AT_REST = 0.1  # an axis of the centre is not narrower, so that it does not magnify noise
 _LOOK = {SIMULATION: {"color": "black"}}
@@ -53,9 +53,12 @@ def draw_profiles(tree: xr.DataTree) -> Figure:
     """rho(x) at a few times: simulation with its standard errors, over the lines of the fluids."""
     densities = _densities(tree)
     time = densities[SIMULATION].time
-    figure, axes = panels(2, 2, height=2.1, sharex=True, sharey=True)
-    for ax, share in zip(axes, _MOMENTS, strict=True):
-        moment = round(share * (time.size - 1))
+    last = time.size - 1
+    later = np.maximum(np.rint(_MOMENTS * last).astype(int), range(4))  # each another one
+    moments = np.unique(np.minimum(later, last))
+    rows, columns = (2, 2) if moments.size == 4 else (1, moments.size)
+    figure, axes = panels(rows, columns, height=2.1, sharex=True, sharey=True)
+    for ax, moment in zip(axes, moments, strict=True):
         overlay({n: each.isel(time=moment) for n, each in densities.items()}, ax=ax, style=_LOOK)
         entitle(ax, f"$t = {float(time[moment]):.3g}$ {unit_label(time)}")
         ax.margins(x=0)

@@ -60,7 +60,7 @@ def run_cases(
         Accept results that other source code of the package computed. Use it only if no number
         depends on the edits since.
     progress
-        Show a progress bar with the time left, on a terminal.
+        Show a progress bar with the time left, on a terminal, elsewhere a line every half minute.
 
     Raises
     ------

@@ -8,7 +8,7 @@ import ast
 from functools import cache
 from pathlib import Path
 
-import matplotlib as mpl
+from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
@@ -196,7 +196,7 @@ def described() -> str:
 
 def write(path: Path) -> None:
     """Write the picture, the same every time: no date, no random names."""
-    with mpl.rc_context({"svg.hashsalt": "crazybilliards"}):
+    with style.context(["default", {"svg.hashsalt": "crazybilliards"}]):
         metadata = {"Date": None, "Description": described()}
         draw().savefig(path, metadata=metadata)
 

@@ -134,7 +134,7 @@ def hydrodynamics(
         positions. The default is a tenth of it. Both are less on springs that are so soft that
         the rods, or the waves of a steep start, are short against the thermal length.
     progress
-        Show a progress bar, on a terminal or in a notebook.
+        Show a progress bar, on a terminal or in a notebook, elsewhere a line every half minute.
 
     Returns
     -------

@@ -34,9 +34,13 @@ _S = Chain().thermal_length
 
 
 def _swelling(run: xr.Dataset) -> float:
-    """Return the slope of <dx> against i_n by least squares: all rods count."""
+    """Return the slope of <dx>/s against i_n by least squares: all rods count."""
     place = run.normalized_particle.values
-    return float(place @ run.mean_displacement.values / (place @ place))
+    return float(place @ run.mean_displacement.values / (place @ place) / _S)
+
+
+def _confinement(run: xr.Dataset) -> float:
+    return central_width(run, of="displacement_width") / _S
 
 
 # -- figure 5: the perfectly inelastic chain, by its length -----------------------------------
@@ -46,16 +50,15 @@ _INELASTIC = chains.inelastic_at_steps(_SIZES)
 
 
 def _claims_by_length(results: Results) -> list[Claim]:
-    confined = partial(central_width, of="displacement_width")
     claims = []
     for sizes in itertools.pairwise(_SIZES):
         small, large = sizes
         shrinks = f"the mean displacement decreases from L = {small} to L = {large}"
         narrows = f"the interior is confined more strongly at L = {large} than at L = {small}"
-        slope, width = "slope of <dx> against i_n", "W_x in the centre, middle tenth"
+        slope, width = "slope of <dx>/s against i_n", "W_x/s in the centre, middle tenth"
         claims += [
             _decrease(results, sizes, _swelling, shrinks, slope, "fig.3_2"),
-            _decrease(results, sizes, confined, narrows, width, "fig.3_2, inset"),
+            _decrease(results, sizes, _confinement, narrows, width, "fig.3_2, inset"),
         ]
     return claims
 
@@ -128,7 +131,7 @@ def _growth_claim(results: Results, low: float, high: float) -> Claim:
     of_high, of_low = slopes(_RUNS)
     return Claim(
         f"the mean displacement grows from e = {low:g} to {high:g}",
-        f"slope of <dx> against i_n: {of_low} and {of_high}, difference",
+        f"slope of <dx>/s against i_n: {of_low} and {of_high}, difference",
         **at_choices(_STEPS, lambda group: Estimate.minus(*slopes(group))),
         source="section seq:e_larger, fig.5",
     )

@@ -4,21 +4,28 @@ import os
 import re
 import sys
 
+import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
 from installation import run
 
-from crazybilliards.comparison import overlay
+from crazybilliards.apps.commands.output import picture
+from crazybilliards.comparison import film, overlay
 from crazybilliards.comparison.curves import axis_label
 from crazybilliards.comparison.drawing import mark_clipped
 from crazybilliards.comparison.layout import house_style, legend_above, panels
+from crazybilliards.comparison.side_by_side.grid_figures import draw_profile
+from crazybilliards.comparison.stationary_theories import TITLES
 from crazybilliards.kinetic import equilibrium, steady_state
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import VOCABULARY
+from crazybilliards.model.vocabulary import result as described
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers import Covariances
+from crazybilliards.reproduction.claims.report import reproduce
+from crazybilliards.reproduction.figures import find_figures
 
 CHAIN = Chain(size=10, amplitude=3)
 
@@ -186,9 +193,60 @@ def test_a_figure_is_one_or_two_columns_wide_with_letters_of_8_points(columns, w
     assert dict(plt.rcParams) == before
 
 
-def test_commands_draw_whatever_the_backend_of_the_reader_is(tmp_path):
-    code = "from crazybilliards.apps.commands.line import main; main()"
-    command = ("theory", "equilibrium", "--size", "4", "--output", tmp_path)
-    environment = os.environ | {"MPLBACKEND": "nonsense"}
-    run(sys.executable, "-Wignore", "-c", code, *command, env=environment)
-    assert list(tmp_path.glob("*.png"))
+# Settings of a reader that no picture in a file depends on. "dark_background" is a style.
+HOSTILE = {
+    "no LaTeX": {"text.usetex": True, "text.latex.preamble": r"\nonsense"},
+    "letters": {"font.size": 30, "font.family": "cursive", "axes.unicode_minus": False},
+    "lines": {"axes.prop_cycle": plt.cycler(color=["w"]), "lines.linewidth": 9, "axes.grid": True},
+    "files": {"savefig.format": "pdf", "savefig.bbox": "tight", "savefig.transparent": True},
+    "dots": {"figure.dpi": 5, "savefig.dpi": 5, "path.sketch": (9, 9, 9), "interactive": True},
+    "dark": mpl.style.library["dark_background"],
+    "films": {"animation.writer": "html", "animation.bitrate": 1, "animation.codec": "nonsense"},
+}
+
+
+def drawn(folder):
+    """Return the bytes of a picture of a command, of a figure of the paper, and of a film."""
+    picture(draw_profile, equilibrium(CHAIN), "exact")(folder / "profile.png")
+    [figure] = reproduce(find_figures("1"), "quick", folder, formats=["svg"])
+    still = dict.fromkeys(("position", "velocity"), (("time", "particle"), [CHAIN.anchors]))
+    how = {"source": "simulation", "status": "completed", "method": {}}
+    run = described(CHAIN, still, coordinates={"time": [0.0]}, **how)
+    film(run, folder / "rods.gif", progress=False)
+    return [path.read_bytes() for path in sorted(folder.iterdir())], figure.pictures
+
+
+@pytest.fixture(scope="module")
+def ours(tmp_path_factory):
+    return drawn(tmp_path_factory.mktemp("ours"))
+
+
+@pytest.mark.parametrize("settings", HOSTILE.values(), ids=HOSTILE)
+def test_pictures_in_files_do_not_depend_on_the_settings_of_the_reader(settings, ours, tmp_path):
+    with mpl.rc_context(settings):
+        assert drawn(tmp_path) == ours
+
+
+def test_commands_draw_whatever_the_backend_of_the_reader_and_his_matplotlibrc_are(tmp_path):
+    (tmp_path / "matplotlibrc").write_text("text.usetex: True\nnonsense\nfigure.dpi: five\n")
+    command = "from crazybilliards.apps.commands.line import main; main()"
+    arguments = ("theory", "equilibrium", "--size", "4", "--output", tmp_path)
+    environment = os.environ | {"MPLBACKEND": "nonsense", "MATPLOTLIBRC": str(tmp_path)}
+    run(sys.executable, "-Wignore", "-c", command, *arguments, env=environment)
+    picture(draw_profile, equilibrium(Chain(size=4)), TITLES["equilibrium"])(tmp_path / "own.png")
+    assert (tmp_path / "profile.png").read_bytes() == (tmp_path / "own.png").read_bytes()
+
+
+def test_an_overlay_can_be_seen_in_a_dark_style_with_data_of_ones_own():
+    """Beside results, and without their units."""
+    exact = equilibrium(CHAIN)
+    values = exact.density.drop_attrs()
+    own = {"array": values, "dataset": values.to_dataset(), "columns": (values.x, values.values)}
+    with plt.style.context("dark_background"):
+        ax = overlay(own | {"run": exact.assign_attrs(source="simulation")})
+    assert ax.get_xlabel() == "position $x$ [R]"
+    assert ax.get_ylim()[0] == 0
+    for line in ax.lines:
+        np.testing.assert_array_equal(line.get_xydata().T, [exact.x, exact.density])
+        assert np.linalg.norm(np.subtract(mpl.colors.to_rgb(line.get_color()), 0)) > 0.5
+    assert mpl.colors.to_hex(ax.get_facecolor()) == "#000000"

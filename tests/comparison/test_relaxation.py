@@ -146,6 +146,14 @@ def test_every_column_of_panels_has_numbers_below_it(tree, number):
         assert columns_without_numbers(figure) == []
 
 
+@pytest.mark.parametrize("number", [1, 2, 3, 4, 7])
+def test_profiles_are_of_different_times_and_no_density_is_below_0(tree, number):
+    short = tree.map_over_datasets(lambda each: each.isel(time=slice(number)) if each else each)
+    axes = draw_profiles(short).axes
+    assert len({ax.get_title(loc="left")[3:] for ax in axes}) == len(axes) == min(number, 4)
+    assert {ax.get_ylim()[0] for ax in axes} == {0}
+
+
 def test_the_noise_of_a_centre_at_rest_does_not_fill_the_axis(tree):
     resting = tree["evolving"].to_dataset().isel(time=slice(3))
     resting["mean_displacement"] = 1e-9 * resting.mean_displacement

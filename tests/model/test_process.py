@@ -2,13 +2,14 @@
 
 import io
 import signal
+import time
 from contextlib import redirect_stderr
 
 import pytest
 from forked import forked
 
 from crazybilliards.kinetic import displaced, hydrodynamics
-from crazybilliards.model import Chain
+from crazybilliards.model import Chain, progress
 from crazybilliards.model.kernels import announced, kernel
 from crazybilliards.model.process import interrupts_noted, terminated_like_interrupted
 from crazybilliards.model.progress import progress_bar
@@ -112,3 +113,12 @@ def test_a_bar_is_shown_on_a_terminal_only(stream, progress, shown):
         assert list(progress_bar(progress, range(3), desc="simulating")) == [0, 1, 2]
     assert ("simulating: 100%" in stream.getvalue()) == shown
     assert shown or stream.getvalue() == ""
+
+
+def test_a_log_gets_a_line_now_and_then_also_while_nothing_advances(monkeypatch):
+    monkeypatch.setattr(progress, "_PAUSE", 0.02)
+    with redirect_stderr(io.StringIO()) as log, progress_bar(True, total=4, desc="sweep") as bar:
+        bar.update(3)
+        while log.getvalue().count("\n") < 2:
+            time.sleep(0.01)
+    assert {line[:27] for line in log.getvalue().splitlines()} == {"crazybilliards: sweep:  75%"}

@@ -88,6 +88,7 @@ def test_figures_their_claims_and_the_page(run, tmp_path, monkeypatch):
     require_a_row_with_the_verdicts_of_each_part(page)
     assert page.count("* verdict: ") == 1 + 4
     assert "amplitude 10" in page
+    assert len(re.findall(r"vertically up to [\d.]+ % of close packing apart", page)) == 4
     assert "**&lt;dx&gt; is described by B arctanh(C x)**" in page
     assert "* in the paper: section seq:analytics, fig:atan" in page
     pictures = re.findall(r"!\[.*\]\((.*)\)", page)

@@ -11,6 +11,7 @@ from small_sweeps import AtOnce
 
 from crazybilliards.comparison import sweeps
 from crazybilliards.comparison.distances import deviations
+from crazybilliards.comparison.side_by_side import grid_figures
 from crazybilliards.comparison.side_by_side.relaxation import label_distances
 from crazybilliards.model import load
 from crazybilliards.model.locks import locked
@@ -74,6 +75,17 @@ def test_json_is_one_object_with_every_file_written(name, arguments, run, tmp_pa
         assert tree.attrs["by"] == 0.5
         found = {row["theory"]: row["distance"] for row in facts["distances"]}
         assert found == label_distances(tree)
+
+
+@pytest.mark.usefixtures("sketched")
+def test_a_picture_that_fails_costs_no_other_file(arguments, run, tmp_path, monkeypatch):
+    def failing(*_):
+        raise RuntimeError("no room for the legend")
+
+    monkeypatch.setattr(grid_figures, "draw_density_alone", failing)
+    done = run(*arguments("theory"), "--output", tmp_path)
+    assert (done.returncode, done.stderr) == (1, "crazybilliards: no room for the legend\n")
+    assert {path.name for path in tmp_path.iterdir()} == {"theory.nc", "profile.png"}
 
 
 def test_a_sweep_is_computed_on_a_dask_cluster(arguments, run, tmp_path, monkeypatch):
