@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import platform
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 from importlib.metadata import version
 from typing import Any
@@ -111,6 +111,7 @@ ATTRIBUTES = {
     "kinetic_energy_model_error": ("relative error of the energy of the theory itself", "1"),
     "mean_displacement_model_error": ("error of <dx> of the theory itself, over s", "1"),
     "wave_model_error": ("error of the slowest wave of density of the theory, of its height", "1"),
+    "label_model_error": ("error of the label of the theory itself, over the number of rods", "1"),
     "density_model_error": ("error of the density of the theory itself, of close packing", "1"),
     "wall_force_model_error": ("relative error of the force on walls of the theory itself", "1"),
     "iterations": ("iterations until the equations were satisfied", "1"),
@@ -255,6 +256,22 @@ def require(dataset: xr.Dataset, names: Iterable[str]) -> None:
             raise ValueError(f"the result has no {name!r}; it has {has}{meant(name, known)}")
         for axis in _AXES.intersection(map(str, dataset[name].dims)).difference(dataset.coords):
             raise ValueError(f"the {name} of the result has no coordinate {axis!r}")
+
+
+def refuse_unread(
+    given: xr.Dataset, who: str, read: Collection[str], lost: Collection[str] = ()
+) -> None:
+    """Raise a ValueError naming a variable that ``who`` does not read, and that would be lost.
+
+    A simulation or a theory may hold others, except those that are ``lost``.
+    """
+    is_result = given.attrs.get("source") in ("simulation", "theory")
+    for name in map(str, given.data_vars):
+        if name in lost or not (is_result or name in read):
+            raise ValueError(
+                f"{who} does not read {name!r}, it reads {', '.join(read)}; drop_vars({name!r}) "
+                f"leaves it out{meant(name, read)}"
+            )
 
 
 def require_all_particles(dataset: xr.Dataset, size: int, who: str) -> None:

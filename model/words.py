@@ -8,6 +8,8 @@ from difflib import get_close_matches
 from functools import wraps
 from typing import ParamSpec, TypeVar
 
+_ALIKE = 0.65  # of names that are meant by one another, from 0 to 1
+
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
 
@@ -31,7 +33,7 @@ def meant(name: object, known: Iterable[str]) -> str:
     known = list(known)
     if SYMBOLS.get(str(name)) in known:
         return f"; {SYMBOLS[str(name)]} is {name} of the paper"
-    near = get_close_matches(str(name), known, 1)
+    near = get_close_matches(str(name), known, 1, _ALIKE)
     return f"; did you mean {near[0]!r}?" if near else ""
 
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Iterable
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
@@ -11,7 +15,8 @@ from crazybilliards.model.arrays import Array, check_numbers
 from crazybilliards.model.checks import check_integer, shown
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.parameters import WALLS_AND_MASSES
-from crazybilliards.model.vocabulary import result
+from crazybilliards.model.vocabulary import refuse_unread, result
+from crazybilliards.model.warn import warn_user
 from crazybilliards.model.words import check_chain
 
 # Parameters beside ``KNOWN`` with which a start is right: at the anchors, or where rods are put.
@@ -39,7 +44,8 @@ def given_start(
     Raises
     ------
     ValueError
-        If the shapes do not fit, anything is not finite, or rods overlap or are out of order.
+        If the shapes do not fit, anything is not finite, or rods overlap or are out of order. Rods
+        that overlap by the rounding of single precision are moved apart, with a warning.
 
     Examples
     --------
@@ -53,8 +59,10 @@ def given_start(
     replicas = check_integer("replicas", replicas, least=1, most=MOST_REPLICAS)
     require_memory(f"replicas={replicas} of {chain.size} rods", 40.0 * replicas * chain.size)
     shape, dims = (replicas, chain.size), ("replica", "particle")
-    states = {}
-    for name, values in {"position": position, "velocity": velocity}.items():
+    states, given = {}, dict[str, Any](position=position, velocity=velocity)
+    for name, values in given.items():
+        if {"replica", "particle"} == {*getattr(values, "dims", ())}:
+            values = values.transpose("replica", "particle")
         numbers = check_numbers(name, values)
         try:
             states[name] = (dims, np.broadcast_to(numbers, shape).copy())
@@ -64,8 +72,18 @@ def given_start(
                 f"{numbers.shape}"
             ) from None
     start = result(chain, states, source="start", method={"start": "given"})
+    kind = getattr(position, "dtype", np.asarray(position).dtype)
+    if kind.kind == "f" and kind.itemsize < start.position.dtype.itemsize:
+        rounded = start.assign(position=start.position.astype(kind))
+        y = [y for y, _ in replica_starts(chain, rounded, replicas)]
+        return start.assign(position=start.position.copy(data=chain.physical(y)))
     replica_starts(chain, start, replicas)
     return start
+
+
+def digest(starts: Iterable[tuple[Array, Array]]) -> bytes:
+    """Return a number that belongs to these states of the replicas alone."""
+    return hashlib.sha256(b"".join(state.tobytes() for pair in starts for state in pair)).digest()
 
 
 def replica_starts(
@@ -88,16 +106,37 @@ def replica_starts(
     if not (np.isfinite(y).all() and np.isfinite(v).all()):
         raise ValueError("start must be finite")
     # Rounding in x -> y may put touching rods out of order by one unit in the last place of x.
-    tolerance = 1e-12 * max(float(np.abs(x).max()), chain.radius)
-    if (np.diff(y, axis=1) < -tolerance).any():
-        raise ValueError("start must hold rods in order that do not overlap")
-    if (y[:, 0] < low - tolerance).any() or (y[:, -1] > high + tolerance).any():
+    kind, largest = start.position.dtype, max(float(np.abs(x).max()), chain.radius)
+    rounding = 4 * float(np.finfo(kind).eps) if kind.kind == "f" else 0.0
+    tolerance = max(1e-12, rounding) * largest
+    _require_apart(chain, y, tolerance)
+    apart = np.clip(np.maximum.accumulate(y, axis=1), low, high)
+    moved = float(np.abs(apart - y).max())
+    if moved > 1e-12 * largest:
+        warn_user(
+            f"start: rods that overlap by the rounding of {kind} were moved apart by up to "
+            f"{moved:.2g} R"
+        )
+    return list(zip(apart, v, strict=True))
+
+
+def _require_apart(chain: Chain, y: Array, tolerance: float) -> None:
+    """Raise a ValueError that names the rods that overlap most, or the one most inside a wall."""
+    over, (low, high) = -np.diff(y, axis=1), chain.walls
+    if (over > tolerance).any():
+        replica, rod = np.unravel_index(np.argmax(over), over.shape)
+        raise ValueError(
+            f"start must hold rods in order that do not overlap: rods {rod + 1} and {rod + 2} of "
+            f"replica {replica + 1} overlap by {over[replica, rod]:.4g} R"
+        )
+    beyond = np.stack([low - y[:, 0], y[:, -1] - high], axis=1)
+    if (beyond > tolerance).any():
+        replica, side = np.unravel_index(np.argmax(beyond), beyond.shape)
         raise ValueError(
             f"start must hold rods between the walls: their centres lie within "
-            f"{chain.box / 2 - chain.radius:g} of the middle"
+            f"{chain.box / 2 - chain.radius:g} of the middle, and rod {(1, chain.size)[side]} of "
+            f"replica {replica + 1} is {beyond[replica, side]:.4g} R too far out"
         )
-    y = np.clip(np.maximum.accumulate(y, axis=1), low, high)
-    return list(zip(y, v, strict=True))
 
 
 def _states(start: xr.Dataset) -> list[Array]:
@@ -110,6 +149,7 @@ def _states(start: xr.Dataset) -> list[Array]:
             f"and equilibrium_states(chain, replicas) return, got {shown(variables or start)}; "
             "None is rest"
         )
+    refuse_unread(start, "start of simulate", names)
     for name in names:
         dims = start[name].dims
         if "time" in dims:

@@ -162,3 +162,24 @@ def test_each_point_bounces_as_if_it_were_alone(chain):
         np.testing.assert_allclose(state, (places, speeds), atol=1e-9)
         np.testing.assert_allclose(tally.struck, np.sum(struck, axis=0), rtol=1e-9)
     assert tally.struck[1].min() > 20
+
+
+@pytest.mark.parametrize("damping", [0.0, 1e-12])
+def test_a_step_of_any_number_of_turns_keeps_the_energy(damping):
+    chain = Chain(size=2, damping=damping, amplitude=0.0, stiffness=1.0, mass=1.0)
+    p = make_propagator(chain, 6.3e9)
+    kept = math.exp(-damping * 6.3e9)
+    for y, v in ((p.y_from_y, p.v_from_y), (p.y_from_v, p.v_from_v)):
+        assert y**2 + v**2 == pytest.approx(kept, rel=1e-13 if damping == 0 else 1e-10)
+
+
+@pytest.mark.parametrize("kind", [np.float16, np.float32])
+def test_rods_that_overlap_by_the_rounding_of_their_type_are_moved_apart(kind):
+    chain = Chain(size=40, restitution=0.0)
+    x = (chain.anchors + 1 / 3).astype(kind)
+    with pytest.warns(UserWarning, match=f"rounding of {kind.__name__} were moved apart by up to"):
+        start = given_start(chain, x)
+    assert (np.diff(chain.reduced(start.position)) > -1e-13).all()
+    np.testing.assert_allclose(start.position[0], x, rtol=4 * np.finfo(kind).eps)
+    with pytest.raises(ValueError, match="rods 20 and 21 of replica 1 overlap by 1"):
+        given_start(chain, np.where(np.arange(40) == 20, x - 1, x).astype(kind))
