@@ -6,7 +6,6 @@ Observers, kernels, checkpoints and the provenance read it.
 
 from __future__ import annotations
 
-import hashlib
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -26,7 +25,7 @@ from crazybilliards.particles import dynamics, scales
 from crazybilliards.particles.dynamics import Dynamics, Stepper, default_merging, make_dynamics
 from crazybilliards.particles.laws.law import EXACT, Method, choose_operator
 from crazybilliards.particles.scales import start_swing, typical_speed
-from crazybilliards.particles.start import MOST_REPLICAS, replica_starts
+from crazybilliards.particles.start import MOST_REPLICAS, digest, replica_starts
 from crazybilliards.particles.timing import choose_step, count_blocks, default_warmup, too_short
 
 _GROUPS = 32  # of an ensemble: enough for an error bar good to an eighth
@@ -90,10 +89,9 @@ class Run:
         self.replicas = check_integer("replicas", self.replicas, least=1, most=MOST_REPLICAS)
         states = self.replicas * (_BYTES_PER_ROD * float(self.chain.size) + _BYTES_PER_REPLICA)
         require_memory(f"replicas={self.replicas} of {self.chain.size} rods", states + _CHUNKS)
-        _ = self.chosen
+        _ = self.chosen, self.starts
         self._count_steps()
         require_resolved(self.chain, float(self.chain.reduced_anchors[-1]))
-        _ = self.starts
         sums = self.groups * sum(observer.memory(self) for observer in self.observers)
         names = ", ".join(observer.name for observer in self.observers)
         few = "ask for less, such as 'widths' alone, or fewer particles, replicas or times"
@@ -129,6 +127,7 @@ class Run:
             duration,
             stepper=self.stepper,
             exact=self.exact,
+            crossing=self._crossing_time(),
             finest=min(observer.interval(self.chain) for observer in self.observers),
         )
         self.every = self.stride * self.time_step
@@ -148,6 +147,15 @@ class Run:
         self.too_short = "" if self.ensemble or shared else too_short(*timed)
         self.warmup = self.warmup_steps * self.time_step
         self.duration = (self.snapshots - self.ensemble) * self.stride * self.time_step
+
+    def _crossing_time(self) -> float:
+        """Time in which rods without springs, damping and noise cross a mean room; else inf."""
+        chain, speed = self.chain, max(float(np.sqrt(np.mean(v**2))) for _, v in self.starts)
+        free = chain.stiffness == chain.damping == chain.amplitude == 0 < speed
+        if not free or self.method != "event-driven":
+            return math.inf
+        apart = 2 * chain.walls[1] if chain.box else max(np.ptp(y) for y, _ in self.starts)
+        return float(apart or chain.radius) / (chain.size * speed)
 
     @property
     def ensemble(self) -> bool:
@@ -206,18 +214,19 @@ class Run:
         return max(start_swing(self.chain, time, y, v) for y, v in self.starts)
 
     @cached_property
+    def fastest_start(self) -> float:
+        """Upper estimate of the speed that noise and the start's energy give a rod [R/t_0]."""
+        time = self.warmup + self.duration
+        return max(typical_speed(self.chain, time, y, v) for y, v in self.starts)
+
+    @cached_property
     def streams(self) -> list[np.random.SeedSequence]:
         """The random numbers of every replica; a given start is a part of their seed.
 
         Otherwise a run that continues another one would repeat its noise.
         """
-        start = [] if self.start is None else list(self._digest_of_starts)
+        start = [] if self.start is None else list(digest(self.starts))
         return np.random.SeedSequence([self.seed, *start]).spawn(self.replicas)
-
-    @cached_property
-    def _digest_of_starts(self) -> bytes:
-        states = (state.tobytes() for start in self.starts for state in start)
-        return hashlib.sha256(b"".join(states)).digest()
 
     @property
     def groups(self) -> int:
@@ -251,11 +260,10 @@ class Run:
     @cached_property
     def dynamics(self) -> Dynamics:
         """The numbers and arrays that the kernels need."""
-        time = self.warmup + self.duration
         return make_dynamics(
             self.chain,
             self.time_step,
-            speed=max(typical_speed(self.chain, time, y, v) for y, v in self.starts),
+            speed=self.fastest_start,
             method=self.method,
             stepper=self.stepper,
             merging=self.merging,
@@ -278,7 +286,7 @@ class Run:
             "replicas": self.replicas,
             "observe": [str(observer) for observer in self.observers],
             "particles": "all" if self.particles is None else (self.chosen + 1).tolist(),
-            "start": "at rest" if self.start is None else f"sha256 {self._digest_of_starts.hex()}",
+            "start": "at rest" if self.start is None else f"sha256 {digest(self.starts).hex()}",
             "schedule": {
                 "time_step": self.time_step,
                 "warmup_steps": self.warmup_steps,

@@ -72,7 +72,8 @@ def simulate(
         For e != 1 it is also short enough to resolve the noise between collisions; see ``scales``.
         Elastic rods on linear springs without a gap, without springs in a box, and a single rod,
         are flown exactly, unless single collisions or walls are observed. Any step is right then;
-        None: the time between snapshots.
+        None: the time between snapshots. Without springs, damping and noise any step is right, too;
+        None: the time in which rods cross the mean room between them.
     method
         ``"event-driven"``: every collision in its order in time. ``"contact-dynamics"``: all
         contacts of a step at once, the paper's method. At e > 0 it takes energy in every step in

@@ -2,7 +2,8 @@
 
 * time step: see :func:`crazybilliards.particles.scales.default_time_step`. Where the motion of the
   chain is known exactly (``laws/exact_flight.py``), any step is right, and it is the time between
-  snapshots.
+  snapshots. So it is for rods without springs, damping and noise, and their step is the time in
+  which they cross the mean free room between them.
 * warm-up: 12 relaxation times of the slowest mode, so that the start has decayed to exp(-12). There
   is none with a given start or for an ensemble, whose time begins with the start.
 * blocks: a block lasts at least 4 correlation times, because the means of blocks must not be
@@ -56,14 +57,16 @@ def choose_step(
     *,
     stepper: Stepper,
     exact: bool,
+    crossing: float,
     finest: float,
 ) -> tuple[float, int]:
     """Return the step and the steps between snapshots; refuse a run that would not end.
 
     ``every``, the time between snapshots, is kept exactly, and the step becomes a whole fraction of
     it. An ``every`` that makes it over a thousand times as short and the run over a million steps
-    long is refused. ``exact``: every step is right, whatever its length. ``finest``: what observers
-    need for ``every`` where it is not given.
+    long is refused. ``exact``: every step is right, whatever its length. ``crossing``: the step of
+    rods without springs, damping and noise; else inf. ``finest``: what observers need for ``every``
+    where it is not given.
     """
     every = None if every is None else check_real("every", every, positive=True)
     if time_step is not None:
@@ -75,9 +78,10 @@ def choose_step(
         try:
             needed = default_time_step(chain)
         except ValueError:
-            if not exact or every is None:
+            # Free rods have no time scale, and need none if snapshots have one.
+            needed = every if exact and every else crossing
+            if needed == math.inf:
                 raise
-            needed = every  # free rods have no time scale, and need none if snapshots have one
         least = needed / _MOST_SHORTENED
     longest, finest = needed, min(max(finest, least), _STRIDE * needed)
     if exact and time_step is None:

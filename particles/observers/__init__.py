@@ -94,6 +94,8 @@ def check_observers(run: Run) -> None:
         for name in sorted(names):
             other = owners.setdefault(name, observer)
             common = name == "time" and observer.shares_time and other.shares_time
+            if other is not observer and other.name == observer.name:
+                raise ValueError(f"observe holds {observer.name!r} twice; take one of them")
             if other is not observer and not common:
                 raise ValueError(
                     f"observe: {other.name!r} and {observer.name!r} would both give {name!r}; "

@@ -18,7 +18,8 @@ from crazybilliards.particles.scales import first_decay, settling_time
 
 _RELAXATIONS = 5  # the longest lag unless it is given, and the shortest for a spectrum
 _INTERVALS = 5  # in the first decay of a velocity, unless the time between snapshots is given
-_LAGS = 300  # unless their number is given or follows from what is given
+_LAGS = 300  # of a longest one that is given, unless their number is
+_LAGS_BY_DEFAULT = 1000  # if neither is given
 # A block is longer than the lags, because blocks with pairs in common are not independent.
 _LAGS_OF_A_BLOCK, _FEWEST_BLOCKS = 2, 10
 _QUANTITIES = (
@@ -74,13 +75,15 @@ class TimeCorrelations(Averaged):
     displacements over time then does not exist, and ``displacement_autocorrelation`` is NaN.
 
     In an ensemble the lag is counted from the first time. All quantities but the spectrum, which
-    does not exist, then lie over ``time``, and <d_i(s)> <d_i(s+t)> is subtracted.
+    does not exist, then lie over ``time``, and <d_i(s)> <d_i(s+t)> is subtracted. ``longest`` and
+    ``lags`` are refused.
 
     The shortest lag is ``every``, the time between snapshots of :func:`simulate`, and all lags are
     multiples of it up to ``longest``. Where ``every`` is not given it is a fifth of the time in
     which velocities decay first, which is the shortest of m/gamma, of the time scale of the springs
     and of the time between two collisions. It is never above 10 steps, and never so short that
-    ``longest`` needs more than 300 lags.
+    ``longest`` needs more than 300 lags, or 5 relaxation times more than 1000. Of a long chain the
+    latter may be longer than the first decay; ``every`` chooses another.
 
     A buffer keeps the last snapshots. All lags are therefore exact, equally far apart as a spectrum
     needs them, and take 16 ``lags`` bytes per rod and wave, and as much per block. Snapshots are
@@ -92,8 +95,8 @@ class TimeCorrelations(Averaged):
     Parameters
     ----------
     longest
-        Longest lag [t_0], below the duration. None: 5 relaxation times of the chain, but at most
-        300 lags.
+        Longest lag [t_0], below the duration and at least ``every``. None: 5 relaxation times of
+        the chain, but at most 2000 lags and half of the duration.
     lags
         Most lags above 0. Where ``longest`` is more snapshots away, only every second, third, ...
         snapshot is used. None: every snapshot is used.
@@ -115,23 +118,35 @@ class TimeCorrelations(Averaged):
 
     def interval(self, chain: Chain) -> float:
         finest = first_decay(chain) / _INTERVALS
-        if self.longest is self.lags is None:
-            return finest
-        return max(finest, (self.longest or _memory(chain)) / (self.lags or _LAGS))
+        most = self.lags or (_LAGS_BY_DEFAULT if self.longest is None else _LAGS)
+        longest = self.longest or _memory(chain)
+        return min(max(finest, longest / most), longest)
 
     def _plan(self, run: Run) -> tuple[int, int]:
         """Return the number of snapshots from one lag to the next, and the number of lags."""
         if run.ensemble:
-            return 1, 0
+            if self.longest is self.lags is None:
+                return 1, 0
+            raise ValueError(
+                f"observe: {self.name!r} has the times of an ensemble as lags: give every and "
+                "duration, and neither longest nor lags"
+            )
         longest, duration, interval = self.longest or _memory(run.chain), run.duration, run.every
+        if interval > longest * (1 + 1e-9):
+            raise ValueError(
+                f"observe: {self.name!r} has the longest lag {longest:.4g}, and snapshots are "
+                f"{interval:.4g} apart: give every={longest:.4g} or less, or a longer lag"
+            )
         if self.longest is self.lags is None and longest < math.inf:
-            longest = min(longest, _LAGS * interval)
+            longest = min(longest, 2 * _LAGS_BY_DEFAULT * interval, duration / 2)
         if longest < duration:
-            lags = self.lags or math.inf
-            spacing = max(math.ceil(longest / interval / lags - 1e-9), 1)
-            last = max(math.ceil(longest / interval / spacing - 1e-9), 1)
-            longest = spacing * last * interval  # rounded up
-            if spacing * last < run.snapshots:
+            steps = math.floor(longest / interval + 1e-9)
+            lags = self.lags or steps
+            # Of the two spacings that give so many lags the one that comes closer to the longest.
+            spacings = max(steps // lags, 1), math.ceil(steps / lags)
+            spacing = max(spacings, key=lambda each: each * min(lags, steps // each))
+            last = min(lags, steps // spacing)
+            if 0 < spacing * last < run.snapshots:
                 return spacing, last
         raise ValueError(
             f"observe: {self.name!r} needs a duration above the longest lag {longest:.4g}, got "
@@ -250,7 +265,7 @@ class TimeCorrelations(Averaged):
     @property
     def _cut_off(self) -> bool:
         """Whether velocities are still correlated at the longest lag."""
-        return self.last * self._interval < self.needed * (1 - 1e-9)
+        return (self.last + 1) * self._interval < self.needed * (1 + 1e-9)
 
     def coordinates(self) -> dict[str, Array]:
         waves = {"wave": np.arange(self.sums.shape[-1] - 1.0 - self.chosen.size)}

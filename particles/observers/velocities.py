@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from crazybilliards.model.checks import check_integer
+from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
 
@@ -40,13 +40,17 @@ class Velocities(Averaged):
 
     The bins are equally wide in arsinh(v / 0.05 W). With 401 of them they are 0.0025 W wide near 0
     and 5 % of v wide far out, up to 1000 W. They resolve the narrow centre of a dissipative chain
-    as well as the tails of an anti-dissipative one, without a pilot run. They take 8 bytes per bin
-    and particle, and the moments 32 bytes per block and particle.
+    as well as the tails of an anti-dissipative one, without a pilot run. Where no noise and damping
+    give a free width W, it is the largest speed that the energy of the start gives a rod. They take
+    8 bytes per bin and particle, and the moments 32 bytes per block and particle.
 
     Parameters
     ----------
     bins
         Number of bins. An odd number puts a bin in the middle.
+    largest
+        Velocity up to which, in both directions, equally wide bins reach [R/t_0]. None: the bins
+        above.
     """
 
     name = "velocities"
@@ -55,27 +59,36 @@ class Velocities(Averaged):
     ensemble = False
     reads_chain = False  # but for the bins: velocities beyond are counted
 
-    def __init__(self, bins: int = 401) -> None:
+    def __init__(self, bins: int = 401, largest: float | None = None) -> None:
         self.bins = check_integer("bins", bins, least=1, most=MOST_BINS)
+        self.largest = None if largest is None else check_real("largest", largest, positive=True)
 
     def shape(self, run: Run) -> tuple[int, ...]:
         return 4, run.chosen.size  # sums of v, v^2, v^3 and v^4
 
     def prepare(self, run: Run, copies: int) -> None:
         super().prepare(run, copies)
-        scale = run.chain.free_velocity_width
-        if not 0 < scale < np.inf:
-            raise ValueError(
-                "observe: 'velocities' needs amplitude and damping above 0, to size its bins"
-            )
-        self.scale = FINEST * scale
-        self.edges = self.scale * np.sinh(np.linspace(-LAST, LAST, self.bins + 1))
+        self.scale = self._scale(run)
+        places = np.linspace(-1, 1, self.bins + 1)
+        self.edges = places * self.largest if self.largest else self.scale * np.sinh(LAST * places)
         self.chosen = run.chosen
         self.rows = np.arange(run.chosen.size) * self.bins
         self.counts = np.zeros(run.chosen.size * self.bins, dtype=np.int64)
         self.outside = 0
 
+    def _scale(self, run: Run) -> float:
+        """Return the velocity below which bins are equal."""
+        width = run.chain.free_velocity_width
+        width = width if 0 < width < np.inf else run.fastest_start
+        if not (self.largest or width):
+            raise ValueError(
+                "observe: 'velocities' needs noise, or a start that moves, to size its bins; "
+                "cb.observers.Velocities(largest=...) sizes them"
+            )
+        return FINEST * width
+
     def memory(self, run: Run) -> float:
+        _ = self._scale(run)
         return 8.0 * self.bins * run.chosen.size + super().memory(run)
 
     def observe(self, snapshots: Snapshots) -> None:
@@ -85,7 +98,8 @@ class Velocities(Averaged):
         sums[1] += square.sum(axis=0)
         sums[2] += np.einsum("sp,sp->p", square, v)
         sums[3] += np.einsum("sp,sp->p", square, square)
-        place = (np.arcsinh(v / self.scale) / LAST + 1) * (self.bins / 2)
+        place = v / self.largest if self.largest else np.arcsinh(v / self.scale) / LAST
+        place = (place + 1) * (self.bins / 2)
         inside = (place >= 0) & (place < self.bins)
         self.outside += int(inside.size - inside.sum())
         cells = (self.rows + place.astype(np.int64))[inside]
