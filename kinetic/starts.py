@@ -24,9 +24,11 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real, refuse_units, shown
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.parameters import WALLS_AND_MASSES
-from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, require, result
+from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, refuse_unread, require, result
 
 _RODS_TOLERANCE = 1e-3
+_READ = ("density", "label", "flow_velocity", "velocity_variance")
+_UNLIKE = 0.05  # of the free width: velocities and widths of rods that a start without them lacks
 _POINTS = 10_001  # from wall to wall
 _CROWDED = 1.01  # so many rods in the length of one overlap, but for errors of the grid
 _CRYSTAL = (
@@ -145,6 +147,8 @@ class Start(NamedTuple):
 def read_start(chain: Chain, start: xr.Dataset) -> Start:
     """Check a start and make functions of it."""
     require(start, ("density",))
+    own = chain_of(start) if "provenance" in start.attrs else chain  # in a quench another one
+    refuse_unread(start, "start of hydrodynamics", _READ, _lost(own, start))
     if start.attrs.get("density_of") == OF_RODS and "displacement" in start:
         start = _as_a_fluid(start)
     if start.density.dims != ("x",):
@@ -166,21 +170,43 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
         )
     require_rods(chain, "density", label[-1])
     scale = chain.size / label[-1]
+    given = x
     if chain.box:
-        inside = np.diff(np.interp([-chain.box / 2, chain.box / 2], x, label))[0]
-        require_rods(chain, "density between the walls", inside)
+        x, density, label = _up_to_the_walls(chain, x, density, label)
     profiles = {}
-    # In a quench it is another chain.
-    own = chain_of(start) if "provenance" in start.attrs else chain
     free = _fluid_variance(own)
     for name, default in (("flow_velocity", 0.0), ("velocity_variance", free)):
-        values = _numbers(start, name) if name in start else np.full(x.size, default)
-        if values.shape != x.shape or not np.isfinite(values).all():
+        values = _numbers(start, name) if name in start else np.full(given.size, default)
+        if values.shape != given.shape or not np.isfinite(values).all():
             raise ValueError(f"start: {name} must be finite and over x alone")
-        profiles[name] = PchipInterpolator(x, values)
+        profiles[name] = PchipInterpolator(x, np.interp(x, given, values))
     if (profiles["velocity_variance"](x) <= 0).any():
         raise ValueError("start: velocity_variance must be positive")
     return Start(x, CubicHermiteSpline(x, scale * label, scale * density), *profiles.values())
+
+
+def _lost(own: Chain, start: xr.Dataset) -> list[str]:
+    """Return the variables of a result that say more of its state than what is read of it."""
+    lost, W = ["heat_flux"], own.free_velocity_width
+    if "mean_velocity" in start and "flow_velocity" not in start:
+        lost += ["mean_velocity"] * bool((np.abs(start.mean_velocity) > _UNLIKE * W).any())
+    if "velocity_width" in start and "velocity_variance" not in start:
+        masses = own.rod_masses[start.particle.astype(int) - 1] / own.mass
+        widths = start.velocity_width * np.sqrt(masses)
+        lost += ["velocity_width"] * bool((np.abs(widths - W) > _UNLIKE * W).any())
+    return lost
+
+
+def _up_to_the_walls(
+    chain: Chain, x: Array, density: Array, label: Array
+) -> tuple[Array, Array, Array]:
+    """Return a start with nodes at the walls, where its density jumps and its label ends."""
+    end, cell = chain.box / 2, float(np.diff(x).max())
+    inside = np.diff(np.interp([-end - cell, end + cell], x, label))[0]
+    require_rods(chain, "density between the walls", inside)
+    within = np.abs(x) < end - cell / 2
+    label = np.concatenate([[0.0], label[within], label[-1:]])
+    return np.concatenate([[-end], x[within], [end]]), np.pad(density[within], 1, "edge"), label
 
 
 def _as_a_fluid(start: xr.Dataset) -> xr.Dataset:

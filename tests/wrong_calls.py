@@ -11,6 +11,7 @@ cb.Chain(e=0.8) | Chain has no argument 'e'; restitution is e of the paper
 cb.Chain(**{GAMMA: 2}) | damping is ... of the paper
 cb.Chain(restituton=0.9) | Chain has no argument 'restituton'; did you mean 'restitution'?
 cb.Chain(nonsense=3) | 'nonsense'; it takes size, restitution, amplitude
+cb.simulate(chain, rng=1) | simulate has no argument 'rng'; it takes chain, duration
 cb.simulate(chain, dt=0.1) | simulate has no argument 'dt'; time_step is dt of the paper
 chain.replace(e=0.9) | restitution is e of the paper
 cb.compare(chain, {"e": [0.9]}) | restitution is e of the paper
@@ -61,7 +62,11 @@ cb.simulate(chain, observe=()) | observe takes a list of names or observers, got
 cb.simulate(chain, observe="collisions", method="contact-dynamics") | needs single collisions
 cb.simulate(chain, observe="impacts", average="ensemble") | 'impacts' is averaged over time only
 cb.simulate(cb.Chain(size=1), observe="impacts") | 'impacts' needs a chain of at least 2 rods
-cb.simulate(cb.Chain(damping=0), observe="velocities") | 'velocities' needs
+cb.simulate(chain, start=3) | start must be a result with position and velocity...got 3
+cb.simulate(chain, start=start.assign(V=3.0)) | start of simulate does not read 'V', it reads
+cb.simulate(chain, observe=["density", cb.observers.Density()]) | observe holds 'density' twice
+cb.simulate(chain, observe=lags(1), every=5, duration=400) | longest lag 1, and snapshots are 5
+cb.simulate(chain, observe=lags(1), duration=3, average="ensemble") | neither longest nor lags
 cb.simulate(chain, observe="walls") | 'walls' needs a chain between walls, Chain(box=...)
 cb.simulate(chain, observe=cb.observers.Density(reach=1e12)) | reach=1e+12 is too large for a grid
 cb.simulate(chain, particles=3) | particles must be a list of numbers, got 3
@@ -77,8 +82,8 @@ cb.simulate(six, start=start) | start has 5 rods, the chain 6
 cb.simulate(chain, start=start, replicas=3) | start is for replicas=1, got replicas=3
 cb.simulate(chain, start=start * np.nan) | finite
 cb.given_start(chain, six.anchors) | position must fit...5 rods
-cb.given_start(chain, [0, 1, 2, 3, 4]) | do not overlap
-cb.given_start(walled, chain.anchors + 2) | between the walls: their centres lie within 5 of
+cb.given_start(chain, [-4, -2, 0, 1.5, 4]) | do not overlap: rods 3 and 4 of...overlap by 0.5 R
+cb.given_start(walled, chain.anchors + 2) | between the walls: centres lie within 5 of...rod 5
 """
 
 COMBINED = """
@@ -131,6 +136,11 @@ cb.equilibrium_states(chain.replace(restitution=0.8), 4) | chain.replace(restitu
 cb.equilibrium(walled.replace(wall_restitution=0.5)) | elastic walls only
 cb.hydrodynamics(cb.Chain(size=20), crystal, 60) | spikes of a crystal...force_balance
 cb.hydrodynamics(six, cb.displaced(chain, 1), 1) | must add up to the chain's 6 rods, got 5
+cb.hydrodynamics(chain, moved.assign(velocity=3.0), 1) | does not read 'velocity'...'flow_velocity'
+cb.hydrodynamics(chain, moved.assign(temperature=3.0), 1) | does not read 'temperature', it reads
+cb.hydrodynamics(chain, moved.assign(V=3.0), 1) | does not read 'V', it reads
+cb.hydrodynamics(chain, heated, 1) | does not read 'velocity_width', it reads
+cb.force_balance(chain, None, exact.velocity_width) | a DataArray must hold its values over x alone
 cb.hydrodynamics(six, start, 1) | the result has no 'density'
 cb.force_balance(six, displacement=exact) | the result has 5 particles, the chain 6
 cb.force_balance(six, velocity_variance=exact) | the result has 5 particles, the chain 6

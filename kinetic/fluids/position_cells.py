@@ -69,6 +69,7 @@ def starting_fields(chain: Chain, start: Start, faces: Array, *, thermal: bool) 
     rho[0] += start.label(at[0]) / h
     if chain.box:
         rho[-1] += (chain.size - start.label(at[-1])) / h
+    rho *= chain.size / (h * rho.sum())  # cubics between nodes may overshoot at a jump
     v = start.velocity(middle)
     fields = {"rho": rho, "rho V": rho * v}
     if thermal:

@@ -1,10 +1,10 @@
 """Prescribed profiles: the displacement <dx>(x) and the velocity variance W^2(x) of the user.
 
-A profile is a *table* (x, values), a *result* (simulated or exact) with ``mean_displacement`` or
-``velocity_width`` of the particles, or a *callable* of x, such as the paper's arctanh fit. A
-velocity variance may also be a *number*, the same everywhere. A displacement that is callable may
-have an attribute ``support``, the interval (left, right) on which it is finite; the density
-vanishes outside.
+A profile is a *table* (x, values), a DataArray of the values over x, a *result* (simulated or
+exact) with ``mean_displacement`` or ``velocity_width`` of the particles, or a *callable* of x, such
+as the paper's arctanh fit. A velocity variance may also be a *number*, the same everywhere. A
+displacement that is callable may have an attribute ``support``, the interval (left, right) on which
+it is finite; the density vanishes outside.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from scipy.interpolate import PchipInterpolator
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real, refuse_units, shown
-from crazybilliards.model.vocabulary import require, require_all_particles
+from crazybilliards.model.vocabulary import refuse_unread, require, require_all_particles
 
 Prescribed = xr.Dataset | Sequence[ArrayLike] | Array | Callable[[ArrayLike], ArrayLike]
 
@@ -107,10 +107,18 @@ def _table(
     """Return x and values of a table, or of the particles of a result at their mean positions."""
     if isinstance(source, xr.Dataset):
         require(source, (variable, "mean_displacement"))
+        refuse_unread(source, name, (variable, "mean_displacement"))
         require_all_particles(source, chain.size, name)
         refuse_units(name, source[variable])
         return chain.anchors + source.mean_displacement.values, source[variable].values
     refuse_units(name, source)
+    if isinstance(source, xr.DataArray):
+        if source.dims != ("x",) or "x" not in source.coords or source.name == "velocity_width":
+            raise ValueError(
+                f"{name}: a DataArray must hold its values over x alone, got {source.name} over "
+                f"{source.dims}; of the rods give the result itself, with {variable}"
+            )
+        source = source.x.values, source.values
     try:
         x, values = (np.asarray(column, dtype=float) for column in source)
     except (TypeError, ValueError, OverflowError) as error:

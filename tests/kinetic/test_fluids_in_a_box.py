@@ -12,6 +12,7 @@ from crazybilliards import deviation, smooth
 from crazybilliards.kinetic import equilibrium, force_balance, hydrodynamics, rod_by_rod
 from crazybilliards.kinetic.fluids.one_mass import wave_model_error
 from crazybilliards.kinetic.gas.collision_moments import decay_of_two_masses
+from crazybilliards.kinetic.starts import gathered, wave
 from crazybilliards.model import Chain
 
 
@@ -214,3 +215,25 @@ def test_a_fluid_of_equal_rods_says_how_wrong_it_is():
     assert flow.attrs["wave_model_error"] < 0.02
     two = gas(0.2 * k, mass_ratio=3.0)
     assert "wave_model_error" not in hydrodynamics(two, waved(two, 0.02), **once).attrs
+
+
+@pytest.mark.parametrize(("size", "box"), [(4, 20.0), (3, 7.0), (5, 10.5)])
+@pytest.mark.parametrize("start", [gathered, wave])
+def test_starts_whose_density_jumps_at_a_wall_between_nodes_hold_all_rods(size, box, start):
+    chain = Chain(size=size, box=box, stiffness=0.0)
+    flow = hydrodynamics(chain, start(chain, 0.5), 0.2, every=0.1, frame="eulerian", progress=False)
+    np.testing.assert_allclose(flow.rods, size, rtol=1e-9)
+
+
+def test_two_streams_that_a_fluid_does_not_let_through_each_other_are_told_of():
+    chain = Chain(size=20, amplitude=3.0, damping=0.1)
+    x = np.linspace(-150, 150, 2001)
+    density = np.exp(-(((np.abs(x) - 60) / 20) ** 2))
+    density *= 20 / np.trapezoid(density, x)
+    profiles = {"density": ("x", density), "flow_velocity": ("x", -60 * np.tanh(x / 20))}
+    start, how = xr.Dataset(profiles, {"x": x}), {"velocity_variance": 400.0, "progress": False}
+    with pytest.warns(UserWarning, match="pass through one another"):
+        flow = hydrodynamics(chain, start, 1.0, every=0.5, **how)
+    assert flow.attrs["label_model_error"] > 0.15
+    with pytest.warns(UserWarning, match="two streams meet at"):
+        hydrodynamics(chain.replace(gap=0.1), start, 0.1, every=0.1, **how)
