@@ -12,7 +12,9 @@ import xarray as xr
 from crazybilliards.model import chain_of
 from crazybilliards.model.checks import is_list, shown
 from crazybilliards.model.vocabulary import require
+from crazybilliards.particles.start import digest, replica_starts
 
+_LISTS = ("seed", "ended")  # of the runs in a mean
 _NO_RUN = "takes results of simulate: other error bars do not fall with the number of results"
 
 
@@ -39,19 +41,25 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
     ------
     ValueError
         For runs of different chains, or of the same seed, which are no independent ones; if they
-        are not measured at the same particles, positions or times.
+        differ in the method, the time step, the time between snapshots, the warm-up or the start,
+        unless this is the last snapshot of another one of them; if they are not measured at the
+        same particles, positions or times.
     """
     if isinstance(runs, xr.Dataset) and "seed" in runs.dims:
         for text in runs.get("provenance", xr.DataArray("")).values.flat:
             if text and "snapshots" not in json.loads(text):
                 raise ValueError(f"combine {_NO_RUN}")
-        return _mean(runs, xr.ones_like(runs.seed, dtype=float))
+        if "provenance" in runs and runs.provenance.dims == ("seed",):
+            return combine(_cases(runs))
+        return _mean(runs, xr.ones_like(runs.seed, dtype=float)).assign(_status(runs))
     if isinstance(runs, xr.Dataset) or not is_list(runs) or len(runs) == 0:
         raise ValueError(
             "runs must be a list of results, or of a sweep over seed what load_sweep returns, got "
             f"{shown(runs)}"
         )
     runs = list[xr.Dataset](runs)
+    if any(isinstance(run, xr.Dataset) and "seed" in run.dims for run in runs):
+        raise ValueError("runs must each be one result: combine every sweep first, then these")
     provenances = _check(runs)
     snapshots = np.array([float(each["snapshots"]) for each in provenances])
     parts = [run[_names(runs[0])] for run in runs]
@@ -63,7 +71,9 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
     if all(run.sizes.get("block", 0) > 1 for run in runs):
         found["density_block"] = _blocks(runs, snapshots / snapshots.sum(), found.density)
     common = {k: v for k, v in provenances[0].items() if all(v == p.get(k) for p in provenances)}
-    common |= {"seed": [each["seed"] for each in provenances], "snapshots": int(snapshots.sum())}
+    common |= {name: provenances[0].get(name) for name in ("start", "schedule")}
+    common |= {name: [one for each in provenances for one in each[name]] for name in _LISTS}
+    common["snapshots"] = int(snapshots.sum())
     errors = [run.attrs.get("time_step_error", np.nan) for run in runs]
     return found.assign_attrs(
         {k: v for k, v in runs[0].attrs.items() if all(v == run.attrs.get(k) for run in runs)},
@@ -76,9 +86,12 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
 def _check(runs: Sequence[xr.Dataset]) -> list[dict[str, Any]]:
     """Return what is known about the runs, or raise a ValueError if their mean has no meaning."""
     first: xr.Dataset = runs[0]
+    if not any(_names(run) for run in runs):
+        raise ValueError("runs must have variables with error bars: nothing was measured in these")
     provenances: list[dict[str, Any]] = []
     for run in runs:
         require(run, _names(first) if provenances else ())
+        require(first, _names(run) if provenances else ())
         chain, provenance = chain_of(run), json.loads(run.attrs["provenance"])
         if run.attrs.get("source") != "simulation" or "snapshots" not in provenance:
             raise ValueError(f"combine {_NO_RUN}")
@@ -86,10 +99,67 @@ def _check(runs: Sequence[xr.Dataset]) -> list[dict[str, Any]]:
             raise ValueError("combine takes runs before their densities are smoothed")
         if chain != chain_of(first):
             raise ValueError(f"runs must be of one chain, got {chain_of(first)} and {chain}")
-        if any(provenance["seed"] == other["seed"] for other in provenances):
-            raise ValueError(f"runs must have other seeds, got {shown(provenance['seed'])} twice")
+        if not isinstance(provenance["seed"], list):  # of a mean they are lists already
+            ended = [_end(run)] if {"position", "velocity"} <= {*run} else []
+            provenance |= {"seed": [provenance["seed"]], "ended": ended}
+        provenance.setdefault("ended", [])
+        for seed in provenance["seed"]:
+            if any(seed in other["seed"] for other in provenances):
+                raise ValueError(f"runs must have other seeds, got {shown(seed)} twice")
         provenances.append(provenance)
+    ends = {end for each in provenances for end in each["ended"]}
+    # A run that goes on from another one of them has no warm-up of its own.
+    first_of_all = min(provenances, key=lambda each: each.get("start") in ends)
+    for each in provenances:
+        free = ("start", "warm-up") if each.get("start") in ends else ()
+        for name, of in _differences(first_of_all, each).items():
+            if name not in free:
+                raise ValueError(f"runs must differ in the seed only, not in {name}: got {of}")
+    provenances[0] |= {name: first_of_all.get(name) for name in ("start", "schedule")}
     return provenances
+
+
+def _differences(one: dict[str, Any], other: dict[str, Any]) -> dict[str, str]:
+    """Return what decides the means and is not the same, as "this and that" by its name."""
+    had, has = ({**each, **each.get("schedule", {})} for each in (one, other))
+    for each in (had, has):
+        for name, steps in {"every": "stride", "warm-up": "warmup_steps"}.items():
+            each[name] = each.get(steps, 0) * each.get("time_step", 0)
+    return {
+        name.replace("_", " "): f"{shown(had.get(name))} and {shown(has.get(name))}"
+        for name in ("method", "stepper", "merging", "time_step", "every", "warm-up", "start")
+        if had.get(name) != has.get(name)
+    }
+
+
+def _end(run: xr.Dataset) -> str:
+    """Return the start, as in a provenance, of a run that continues this one."""
+    last = run.isel(time=slice(-1, None)).squeeze("time") if "time" in run.dims else run
+    if last.sizes["particle"] != chain_of(run).size or not np.isfinite(last.velocity).all():
+        return ""
+    return f"sha256 {digest(replica_starts(chain_of(run), last, last.sizes['replica'])).hex()}"
+
+
+def _cases(grid: xr.Dataset) -> list[xr.Dataset]:
+    """Return the results in a sweep over seeds alone, with the attributes that they had."""
+    cases = []
+    for k in np.flatnonzero(grid.provenance != ""):
+        case = grid.isel(seed=k, drop=True)
+        own = {str(name): value.item() for name, value in case.data_vars.items() if not value.dims}
+        case = case.drop_vars(own).assign_attrs(grid.attrs | own)
+        cases.append(case.dropna("block", how="all") if "block" in case.dims else case)
+    return cases
+
+
+def _status(grid: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Return what a mean over seeds has of the status of its cases, and of their largest error."""
+    found: dict[str, Any] = {}
+    present = grid.provenance != ""
+    for status in ("completed", "interrupted", "diverged"):
+        has = (grid.status == status).any("seed")
+        found["status"] = xr.where(has, status, found.get("status", ""))
+    error = grid.time_step_error.where(present, -np.inf).max("seed", skipna=False)
+    return {**found, "time_step_error": error.where(np.isfinite(error))}
 
 
 def _names(run: xr.Dataset) -> list[str]:

@@ -8,7 +8,7 @@ from small_sweeps import AtOnce, sweep
 from crazybilliards.comparison import combine, load_sweep, smooth
 from crazybilliards.comparison.sweeps import run_cases
 from crazybilliards.model import Chain, load, save
-from crazybilliards.particles import simulate
+from crazybilliards.particles import given_start, simulate
 
 QUIET = {"threads": 1, "progress": False}
 CHAIN = Chain(size=5, gap=0.3)
@@ -101,3 +101,45 @@ def test_a_sweep_over_seeds(tmp_path):
         for name in ("velocity_width", "velocity_width_error", "displacement_width"):
             here = found[name].sel(size=size).values[:size]
             np.testing.assert_allclose(here, alone[name], rtol=1e-9)
+
+
+CHANGES = {
+    "method": {"method": "contact-dynamics"},
+    "stepper": {"stepper": "euler"},
+    "merging": {"merging": 0.2},
+    "time step": {"time_step": 0.05},
+    "every": {"every": 0.5},
+    "warm-up": {"warmup": 60.0},
+    "start": {"start": given_start(CHAIN, CHAIN.anchors + 5)},
+}
+
+
+@pytest.mark.filterwarnings("ignore:duration=20 is short")
+def test_runs_that_differ_in_more_than_the_seed_are_refused_unless_one_goes_on_from_another():
+    how = {"duration": 20, "warmup": 50.0, "every": 1.0, "observe": ["widths", "snapshots"]}
+    one, two = (simulate(CHAIN, seed=seed, **how, **QUIET) for seed in (1, 2))
+    both = combine([one, two])
+    for name, change in CHANGES.items():
+        other = simulate(CHAIN, seed=3, **{**how, **change}, **QUIET)
+        for runs in ([one, other], [other, one], [both, other]):
+            with pytest.raises(ValueError, match=f"in the seed only, not in {name}: got"):
+                combine(runs)
+    how["warmup"] = 0.0
+    on = simulate(CHAIN, seed=3, start=two.isel(time=-1), **how, **QUIET)
+    whole, nested = combine([on, one, two]), combine([both, on])
+    np.testing.assert_allclose(nested.velocity_width, whole.velocity_width)
+    np.testing.assert_allclose(nested.velocity_width_error, whole.velocity_width_error)
+    with pytest.raises(ValueError, match="other seeds, got 2 twice"):
+        combine([nested, two])
+
+
+@pytest.mark.filterwarnings("ignore:restitution=")
+@pytest.mark.parametrize("grid", [{"seed": [1, 2]}, {"seed": [1, 2], "damping": [1.0, 2.0]}])
+def test_a_mean_of_runs_of_which_one_diverged_has_this_status(grid, tmp_path):
+    cases = sweep(grid=grid).cases()
+    run_cases(cases, tmp_path, AtOnce(), progress=False)
+    bad = cases[-1].file(tmp_path)
+    save(load(bad).assign_attrs(status="diverged"), bad)
+    found = combine(load_sweep(tmp_path))
+    status = found.get("status", xr.DataArray(found.attrs.get("status")))
+    assert status.values.ravel().tolist() == ["completed"] * (status.size - 1) + ["diverged"]
