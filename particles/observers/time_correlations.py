@@ -18,8 +18,7 @@ from crazybilliards.particles.scales import first_decay, settling_time
 
 _RELAXATIONS = 5  # the longest lag unless it is given, and the shortest for a spectrum
 _INTERVALS = 5  # in the first decay of a velocity, unless the time between snapshots is given
-_LAGS = 300  # of a longest one that is given, unless their number is
-_LAGS_BY_DEFAULT = 1000  # if neither is given
+_LAGS = 300  # unless their number is given or follows from what is given
 # A block is longer than the lags, because blocks with pairs in common are not independent.
 _LAGS_OF_A_BLOCK, _FEWEST_BLOCKS = 2, 10
 _QUANTITIES = (
@@ -82,8 +81,7 @@ class TimeCorrelations(Averaged):
     multiples of it up to ``longest``. Where ``every`` is not given it is a fifth of the time in
     which velocities decay first, which is the shortest of m/gamma, of the time scale of the springs
     and of the time between two collisions. It is never above 10 steps, and never so short that
-    ``longest`` needs more than 300 lags, or 5 relaxation times more than 1000. Of a long chain the
-    latter may be longer than the first decay; ``every`` chooses another.
+    ``longest`` needs more than 300 lags.
 
     A buffer keeps the last snapshots. All lags are therefore exact, equally far apart as a spectrum
     needs them, and take 16 ``lags`` bytes per rod and wave, and as much per block. Snapshots are
@@ -96,7 +94,8 @@ class TimeCorrelations(Averaged):
     ----------
     longest
         Longest lag [t_0], below the duration and at least ``every``. None: 5 relaxation times of
-        the chain, but at most 2000 lags and half of the duration.
+        the chain, but at most 300 lags. The spectrum is NaN where these are shorter than 5
+        relaxation times; give ``longest`` for one.
     lags
         Most lags above 0. Where ``longest`` is more snapshots away, only every second, third, ...
         snapshot is used. None: every snapshot is used.
@@ -118,9 +117,10 @@ class TimeCorrelations(Averaged):
 
     def interval(self, chain: Chain) -> float:
         finest = first_decay(chain) / _INTERVALS
-        most = self.lags or (_LAGS_BY_DEFAULT if self.longest is None else _LAGS)
+        if self.longest is self.lags is None:
+            return finest
         longest = self.longest or _memory(chain)
-        return min(max(finest, longest / most), longest)
+        return min(max(finest, longest / (self.lags or _LAGS)), longest)
 
     def _plan(self, run: Run) -> tuple[int, int]:
         """Return the number of snapshots from one lag to the next, and the number of lags."""
@@ -138,7 +138,7 @@ class TimeCorrelations(Averaged):
                 f"{interval:.4g} apart: give every={longest:.4g} or less, or a longer lag"
             )
         if self.longest is self.lags is None and longest < math.inf:
-            longest = min(longest, 2 * _LAGS_BY_DEFAULT * interval, duration / 2)
+            longest = min(longest, _LAGS * interval)
         if longest < duration:
             steps = math.floor(longest / interval + 1e-9)
             lags = self.lags or steps
