@@ -100,7 +100,7 @@ def film(
         Before any work: for a result without snapshots, another name, an mp4 without ffmpeg.
         For a chain whose simulation diverges, because it has no steady state.
     OSError
-        If the file cannot be written. A former one stays as it was.
+        If the file cannot be written, before any work. A former one stays as it was.
     subprocess.CalledProcessError
         If ffmpeg fails.
     """
@@ -117,6 +117,8 @@ def film(
         raise ValueError("duration is that of a chain to simulate, and this result has its own")
     seconds = check_real("seconds", seconds, positive=True)
     pictures = max(round(_A_SECOND * seconds), 1)
+    if file is not None:
+        write_atomically(file, None)
     if isinstance(run, Chain):
         duration = check_real("duration", 20.0 if duration is None else duration, positive=True)
         run = _short_run(run, duration, pictures, progress)

@@ -18,6 +18,7 @@ def room_fingerprint(*rooms: str) -> str:
     """Return 20 digits of a hash of all modules and tables of rooms, ``"model"`` for example."""
     hashed = hashlib.sha256()
     files = (each for room in rooms for each in (_ROOT / room).rglob("*.*"))
-    for file in sorted(each for each in files if each.suffix in (".py", ".csv")):
+    kept = (each for each in files if "/." not in each.relative_to(_ROOT).as_posix())  # not hidden
+    for file in sorted(each for each in kept if each.suffix in (".py", ".csv")):
         hashed.update(file.name.encode() + hashlib.sha256(file.read_bytes()).digest())
     return hashed.hexdigest()[:20]

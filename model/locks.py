@@ -6,11 +6,21 @@ The operating system frees a lock when the process ends, however it ends (packag
 from __future__ import annotations
 
 import errno
+import hashlib
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from filelock import FileLock, Timeout
+
+
+def hidden_beside(path: Path, ending: str) -> Path:
+    """Return a name beside a file, of a link the file that it names; a hash if that is long."""
+    path = Path(os.path.realpath(path))
+    long = len(os.fsencode(path.name)) > 120  # bytes; an encrypted disk takes 143, others 255
+    name = hashlib.sha256(os.fsencode(path.name)).hexdigest() if long else path.name
+    return path.with_name(f".{name}.{ending}")
 
 
 @contextmanager
@@ -19,7 +29,8 @@ def locked(path: Path) -> Iterator[None]:
 
     Raises a BlockingIOError if another process, or another thread of this one, holds the lock.
     """
-    file = path / ".lock" if path.is_dir() else path.with_name(f".{path.name}.lock")
+    file = path / ".lock" if path.is_dir() else hidden_beside(path, "lock")
+    file.touch()  # filelock would wait where no file can be made
     try:
         with FileLock(file, timeout=0.1, poll_interval=0.01):
             try:

@@ -23,18 +23,22 @@ import h5py
 import numpy as np
 import xarray as xr
 
-from crazybilliards.model.checks import check_path
+from crazybilliards.model.checks import check_path, shown
+from crazybilliards.model.locks import hidden_beside
+from crazybilliards.model.memory import require_memory
 
 _CLASSIC, _NETCDF_4 = b"CDF", b"\x89HDF"  # the first bytes of a file
 _MARK = b"\ncrazybilliards-1 sha256 "
 _TRAILER = len(_MARK) + 64 + 1  # hexadecimal digest and a newline
+_MOST_COMPRESSED = 2000  # times; more than the 1032 of deflate, as a dimension is an array, too
 
 
 def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path:
     """Write a result, or a tree of results, to a NetCDF file; return its path.
 
     The file appears under its name only when it is complete: an interrupted or failed write
-    leaves a former file as it was. Missing folders are made.
+    leaves a former file as it was. Missing folders are made. Of a symbolic link the file that it
+    names is written.
 
     Raises
     ------
@@ -50,15 +54,17 @@ def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path
     return path
 
 
-def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
-    """Read a result that :func:`save` wrote, all of it into memory.
+def load(path: str | os.PathLike[str]) -> xr.Dataset | Any:
+    """Read a result that :func:`save` wrote, all of it into memory, and nothing from other files.
+
+    It is an ``xarray.Dataset``, or an ``xarray.DataTree``, which type checkers take for anything.
 
     Raises
     ------
     FileNotFoundError
         If there is no such file.
     ValueError
-        If the file is damaged, truncated, or was not written by :func:`save`.
+        If the file is damaged, truncated, too large, or was not written by :func:`save`.
     """
     file = check_path("path", path)
     if file.is_dir():
@@ -67,11 +73,13 @@ def load(path: str | os.PathLike[str]) -> xr.Dataset | xr.DataTree:
     try:
         if content.startswith(_CLASSIC):
             return _load_classic(content)
-        tree = xr.open_datatree(io.BytesIO(content), engine="h5netcdf").load()
+        _attributes(content)  # refuses what names other files
+        with xr.open_datatree(io.BytesIO(content), engine="h5netcdf") as tree:
+            for node in tree.subtree:  # tree.load() leaves out variables with the name of a group
+                node.dataset.load()
     # The libraries may raise anything for a file with a valid checksum that is not NetCDF.
     except Exception as error:
-        raise ValueError(f"{path}: not a result, though crazybilliards wrote it") from error
-    tree.close()
+        raise ValueError(f"{path}: not a result, though sealed: {shown(str(error))}") from error
     return tree if tree.children else tree.to_dataset()
 
 
@@ -84,10 +92,29 @@ def load_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
     try:
         if content.startswith(_CLASSIC):
             return dict(_load_classic(content).attrs)
-        with h5py.File(io.BytesIO(content)) as file:
-            return dict(file.attrs)
+        return _attributes(content)
     except Exception as error:
-        raise ValueError(f"{path}: not a result, though crazybilliards wrote it") from error
+        raise ValueError(f"{path}: not a result, though sealed: {shown(str(error))}") from error
+
+
+def _attributes(content: bytes) -> dict[str, Any]:
+    """Return those of an HDF5 file; a ValueError unless it is a tree of arrays that lie in it."""
+    links: list[tuple[str, object]] = []
+    declared = 0
+    with h5py.File(io.BytesIO(content)) as file:
+        file.visititems_links(lambda *link: links.append(link))
+        for name, link in links:
+            # A group that is in itself has two links, and following a link may open another file.
+            if not isinstance(link, h5py.HardLink) or h5py.h5o.get_info(file[name].id).rc != 1:
+                raise ValueError(f"{name} is a link")
+            if isinstance(array := file[name], h5py.Dataset):
+                if array.external or array.is_virtual:
+                    raise ValueError(f"{name} lies in another file")
+                declared += array.nbytes
+        if declared > _MOST_COMPRESSED * len(content):
+            raise ValueError(f"it is too short for the {declared:.3g} bytes of its arrays")
+        require_memory("it", declared)
+        return dict(file.attrs)
 
 
 def netcdf(result: xr.Dataset | xr.DataTree) -> bytes:
@@ -108,14 +135,14 @@ def _load_classic(content: bytes) -> xr.Dataset:
 
 def write_sealed(path: Path, content: bytes) -> None:
     """Write ``content`` and its checksum atomically."""
-    digest = hashlib.sha256(content).hexdigest().encode()
-    write_atomically(path, content + _MARK + digest + b"\n")
+    write_atomically(path, content + _MARK + hashlib.sha256(content).hexdigest().encode() + b"\n")
 
 
 def read_sealed(path: Path) -> bytes:
     """Return the content that :func:`write_sealed` wrote; ValueError if it was changed since."""
     if path.exists() and not path.is_file():
         raise ValueError(f"{path}: a folder or a device, not a file")
+    require_memory(f"{path}", 2.0 * path.stat().st_size)
     raw = path.read_bytes()
     content, trailer = raw[:-_TRAILER], raw[-_TRAILER:]
     if not trailer.startswith(_MARK):
@@ -128,9 +155,10 @@ def read_sealed(path: Path) -> bytes:
     return content
 
 
-def write_atomically(path: Path, content: bytes) -> None:
+def write_atomically(path: Path, content: bytes | None) -> None:
     """Write ``content`` beside ``path``, then rename: readers see the old file or the new one.
 
+    Of a symbolic link the file that it names is written. None: only try whether it can be written.
     The unfinished file has a name that no other write has, and is removed if writing fails. A kill
     leaves it behind.
 
@@ -139,18 +167,23 @@ def write_atomically(path: Path, content: bytes) -> None:
     OSError
         If it cannot be written, naming ``path``; a former file stays as it was.
     """
-    unfinished = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+    target, unfinished = (
+        Path(os.path.realpath(path)),
+        hidden_beside(path, f"{secrets.token_hex(4)}.part"),
+    )
     try:
-        make_folder(path.parent)
+        if target.is_symlink() or (target.exists() and not target.is_file()):
+            raise OSError(errno.EISDIR, "a folder, a device or a link to itself, not a file")
+        make_folder(target.parent)
         try:
             with open(unfinished, "xb") as file:
-                file.write(content)
+                file.write(content or b"")
                 file.flush()
                 os.fsync(file.fileno())
-            os.replace(unfinished, path)
-        except BaseException:
+            if content is not None:
+                os.replace(unfinished, target)
+        finally:
             unfinished.unlink(missing_ok=True)
-            raise
     except OSError as error:
         raise OSError(error.errno, error.strerror or str(error), str(path)) from error
 
@@ -158,6 +191,6 @@ def write_atomically(path: Path, content: bytes) -> None:
 def make_folder(path: Path) -> None:
     """Make a folder and its parents, unless they exist."""
     try:
-        path.mkdir(parents=True, exist_ok=True)
+        Path(os.path.realpath(path)).mkdir(parents=True, exist_ok=True)
     except FileExistsError as error:
         raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(path)) from error

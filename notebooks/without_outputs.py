@@ -45,7 +45,7 @@ def write_copies(folder):
     shutil.copy(HERE / "teaching.py", folder)
     compiled = shutil.ignore_patterns("__pycache__")
     shutil.copytree(HERE / "solutions", folder / "solutions", ignore=compiled, dirs_exist_ok=True)
-    paths = sorted(HERE.glob("*.ipynb"))
+    paths = sorted(HERE.glob("[!.]*.ipynb"))
     new = [path for path in paths if not (folder / path.name).exists()]
     for path in new:
         nbformat.write(for_learners(path), folder / path.name)

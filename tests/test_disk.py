@@ -14,6 +14,7 @@ import subprocess
 import numpy as np
 import pytest
 
+from crazybilliards.comparison import film
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain, load, save
 from crazybilliards.particles import simulate
@@ -166,4 +167,6 @@ def test_no_place_for_a_checkpoint_is_an_error_before_any_work(name, tmp_path):
     with pytest.raises((OSError, ValueError)) as caught:
         simulate(Chain(), duration=1e9, checkpoint=tmp_path / name, progress=False)
     assert "\n" not in str(caught.value)
+    with pytest.raises(OSError, match=r"Not a directory: .*rods.gif"):
+        film(Chain(), tmp_path / "file" / "rods.gif", duration=1e9, progress=False)
     assert sorted(path.name for path in tmp_path.rglob("*")) == ["file", "folder"]

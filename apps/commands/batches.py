@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from typer import Argument, Exit, Option
 
-from crazybilliards.apps.commands.options import Json, Processes
+from crazybilliards.apps.commands.options import Json, Processes, at_home
 from crazybilliards.apps.commands.output import answer, complain, writing_to
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ _PAGES = {"all": "claims.md", "analytics": "analytics.md"}
 
 def sweep(
     file: Path = Argument(..., help="TOML file: [grid], [chain] and [simulate], or another job."),
-    output: Path = Option(..., "--output", "-o", help="Folder for the results, one file a case."),
+    output: Path = Option(..., "--output", "-o", callback=at_home, help="Folder of all cases."),
     processes: Processes = None,
     scheduler: str | None = Option(None, help="dask cluster to compute on, tcp://HOST:PORT say."),
     keep_old: bool = Option(False, "--keep-old", help="Take results of other source code, too."),
@@ -87,7 +87,7 @@ def reproduce(
     ),
     show_list: bool = Option(False, "--list", help="List the figures, and stop."),
     quality: Literal["quick", "full"] = Option("quick", help="For all figures 2 minutes, or 15."),
-    output: Path = Option(Path("reproduced"), "--output", "-o", help="Folder for all files."),
+    output: Path = Option(Path("reproduced"), "--output", "-o", callback=at_home, help="Folder."),
     vector: Literal["pdf", "svg"] | None = Option(None, help="Another format for every picture."),
     processes: Processes = None,
     as_json: Json = False,

@@ -78,7 +78,7 @@ def simulate(
     settings |= {"every": every, "average": average, "replicas": replicas, "method": method}
     settings |= {"observe": [name.strip() for name in observe.split(",")]}
     settings |= {"particles": None if particles is None else numbers("particles", particles, int)}
-    with writing_to(output):
+    with writing_to(output, "simulation.nc"):
         run = run_simulation(chain, seed=seed, threads=threads, checkpoint=checkpoint, **settings)
         files = {"simulation.nc": partial(save, run)}
         conclude(run, output, files, as_json, run.to_dict(), *_run_text(run))
@@ -131,7 +131,7 @@ def theory(
     else:
         solver = THEORIES[check_choice("name", name, tuple(THEORIES))]
     solver.check(chain)
-    with writing_to(output):
+    with writing_to(output, "theory.nc"):
         result = solver.solve(chain)
         files: dict[str, Any] = {
             "theory.nc": partial(save, result),

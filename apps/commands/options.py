@@ -10,11 +10,17 @@ from typing import Annotated, Any, get_type_hints
 
 from typer import Option
 
+from crazybilliards.model.checks import check_path
 from crazybilliards.model.parameters import Parameters
 
-Output = Annotated[
-    Path | None, Option("--output", "-o", help="Folder for files; without it nothing is written.")
-]
+
+def at_home(output: Path | None) -> Path | None:
+    """Return a folder, in which ``~`` is the home folder: shells leave it in ``--output=~/x``."""
+    return None if output is None else check_path("output", output)
+
+
+_HELP = "Folder for files; without it nothing is written."
+Output = Annotated[Path | None, Option("--output", "-o", callback=at_home, help=_HELP)]
 Json = Annotated[
     bool, Option("--json", help="Print one JSON object instead of text, numbers in full.")
 ]

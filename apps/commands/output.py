@@ -23,18 +23,20 @@ _ANY_WIDTH = 10_000
 
 
 @contextmanager
-def writing_to(output: Path | None) -> Iterator[None]:
-    """Make a folder and hold it against other processes; raise an OSError before any work."""
+def writing_to(output: Path | None, *names: str) -> Iterator[None]:
+    """Make a folder for files and hold it against others; raise OSErrors before any work."""
     if output is None:
         yield
         return
     from crazybilliards.model.locks import locked
-    from crazybilliards.model.storage import make_folder
+    from crazybilliards.model.storage import make_folder, write_atomically
 
-    made = [folder for folder in (output, *output.absolute().parents) if not folder.exists()]
+    made = [folder for folder in (output, *output.resolve().parents) if not folder.exists()]
     make_folder(output)
     try:
         with locked(output):
+            for name in names:
+                write_atomically(output / name, None)
             yield
     finally:
         for folder in made:  # in which nothing was written

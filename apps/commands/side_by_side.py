@@ -81,7 +81,7 @@ def compare(
     chain = chain.replace(**{name: listed[0] for name, listed in values.items()})
     how: dict[str, Any] = {"duration": duration, "seed": seed}
     how |= {"processes": processes, "threads": threads, "folder": output and output / "cases"}
-    with writing_to(output):
+    with writing_to(output, "comparison.nc"):
         tree = grid.compare(chain, {over: values[over]}, **how)
         rows = _deviations(over, tree)
         columns = {name: heading for name, heading in _COLUMNS.items() if name in (over, *rows[0])}
@@ -177,7 +177,7 @@ def relax(
         by = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}.get(release, 0.5)
     how: dict[str, Any] = {"release": release, "by": by, "duration": duration, "every": every}
     how |= {"replicas": replicas, "seed": seed, "threads": threads}
-    with writing_to(output):
+    with writing_to(output, "relaxation.nc"):
         tree = relaxation.condensed(relaxation.compare_relaxation(chain, **how))
         files: dict[str, Any] = {
             "relaxation.nc": partial(save, tree),

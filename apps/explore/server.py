@@ -47,7 +47,7 @@ def _contents() -> dict[str, tuple[str, bytes]]:
     page = (folder / "around.html").read_text("utf-8").replace("<!-- chain -->", chain)
     contents = {"/": ("text/html; charset=utf-8", page.encode())}
     for file in folder.iterdir():
-        if kind := _KINDS.get(file.name.rpartition(".")[2]):
+        if file.name[0] != "." and (kind := _KINDS.get(file.name.rpartition(".")[2])):
             contents[f"/_static/{file.name}"] = f"{kind}; charset=utf-8", file.read_bytes()
     return contents
 

@@ -99,7 +99,10 @@ class Checkpoint:
     def _restore(self, replicas: Sequence[Replica]) -> None:
         content = read_sealed(self.path)
         try:
-            arrays = dict(np.load(io.BytesIO(content), allow_pickle=False))
+            archive = np.load(io.BytesIO(content), allow_pickle=False)
+            if sum(part.file_size for part in archive.zip.infolist()) > len(content):
+                raise ValueError("compressed, which may fill any memory")
+            arrays = dict(archive)
             identity = dict(json.loads(bytes(arrays["header"]))["identity"])
         # numpy may raise anything for a file of another kind with a valid checksum, e.g. a result.
         except Exception as error:

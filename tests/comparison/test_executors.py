@@ -73,7 +73,7 @@ def test_what_kills_its_process_twice_has_failed_and_costs_nothing_else(monkeypa
 @pytest.mark.cluster
 def test_a_dask_cluster_gives_the_same_results_and_may_lose_a_worker(here, tmp_path):
     distributed = pytest.importorskip("distributed", reason="make cluster installs dask")
-    one = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    one = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0"}
     with (
         distributed.LocalCluster(**one) as cluster,
         distributed.Client(cluster, set_as_default=False) as client,

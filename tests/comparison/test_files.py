@@ -7,9 +7,11 @@ be. Reading must give the same bits or one ValueError of one line. Damage must b
 NetCDF libraries see a byte.
 """
 
+import io
 import re
 import shutil
 
+import h5py
 import numpy as np
 import pytest
 import xarray as xr
@@ -115,6 +117,25 @@ def test_a_damaged_file_is_refused_or_read_right(kind, flips, files, tmp_path, m
     assert again.identical(sound) if hasattr(sound, "identical") else str(again) == str(sound)
 
 
+def virtual(file, other):
+    layout = h5py.VirtualLayout((1,), float)
+    layout[:] = h5py.VirtualSource(other, "d", (1,))
+    file.create_virtual_dataset("v", layout)
+
+
+# What HDF5 can hold beside arrays: another file's data, itself, and more than its length.
+HOSTILE = {
+    "external link": lambda file, other: file.update(x=h5py.ExternalLink(other, "/d")),
+    "external storage": lambda file, other: file.create_dataset("x", 1, "f8", external=other),
+    "virtual": virtual,
+    "soft link": lambda file, _: file.update(x=h5py.SoftLink("/velocity_width")),
+    "in itself": lambda file, _: file.update({"group/in/itself": file["/"]}),
+    "two names": lambda file, _: file.update(x=file["velocity_width"]),
+    "huge": lambda file, _: file.create_dataset("x", 10**13, "f8"),
+    "huge in chunks": lambda file, _: file.create_dataset("x", 10**13, "f8", chunks=True),
+}
+
+
 @pytest.fixture(scope="module")
 def strangers(files, tmp_path_factory):
     """Write files that are sealed well, and are not what they should be."""
@@ -141,11 +162,19 @@ def strangers(files, tmp_path_factory):
         "wrong chain": netcdf(run.assign_attrs(provenance='{"chain": {"size": "x"}}')),
         "other chain": netcdf(run.assign_attrs(provenance='{"chain": {"length": 3}}')),
     }
+    with h5py.File(folder / "other.h5", "w") as other:
+        other["d"] = [1.0]
+    for name, change in HOSTILE.items():
+        with h5py.File(buffer := io.BytesIO(contents["no provenance"]), "r+") as file:
+            change(file, str(folder / "other.h5"))
+        contents[name] = buffer.getvalue()
+    np.savez_compressed(buffer := io.BytesIO(), header=np.zeros(10**6))
+    contents["bomb"] = buffer.getvalue()
     for name, content in contents.items():
         write_sealed(folder / f"{name}.nc", content)
     for kind, path in files.items():
         shutil.copy(path, folder / f"another {kind}.nc")
-    return sorted(folder.iterdir())
+    return sorted(folder.glob("*.nc"))
 
 
 # NetCDF files that are no results are read as what they are, and name no chain.
@@ -164,7 +193,7 @@ def test_a_file_of_another_kind_is_refused_and_kept(kind, strangers):
     readable = {path.stem for path in strangers if not refused(READERS[kind], path)}
     assert readable == READABLE.get(kind, NETCDF - {"another checkpoint"})
     assert [path.read_bytes() for path in strangers] == before
-    assert len(strangers) == 22
+    assert len(strangers) == 31
 
 
 @pytest.mark.parametrize(

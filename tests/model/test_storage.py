@@ -10,8 +10,9 @@ import xarray as xr
 from small_sweeps import AtOnce
 
 from crazybilliards.comparison import load_sweep
-from crazybilliards.comparison.sweeps import read_sweep, run_cases
+from crazybilliards.comparison.sweeps import Case, read_sweep, run_cases
 from crazybilliards.model import Chain, chain_of, load, save
+from crazybilliards.model.locks import locked
 from crazybilliards.model.storage import load_attributes, write_sealed
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles import simulate
@@ -41,7 +42,8 @@ def test_what_is_saved_comes_back_the_same_and_other_programs_can_read_it(datase
     assert back.mean_displacement.attrs["units"] == "R_0"
     with xr.open_dataset(path, engine="h5netcdf") as plain:
         xr.testing.assert_equal(plain, dataset)
-    tree = xr.DataTree.from_dict({"a/simulation": dataset, "b": dataset})
+    named = dataset.rename(mean_displacement="a")  # like a group
+    tree = xr.DataTree.from_dict({"a/simulation": dataset, "b": named})
     xr.testing.assert_identical(load(save(tree, path)), tree)
     assert [each.name for each in path.parent.iterdir()] == ["run.nc"]
 
@@ -87,6 +89,31 @@ def test_two_writers_of_one_file_do_not_meet(dataset, tmp_path, monkeypatch):
     save(dataset, path)
     xr.testing.assert_identical(load(path), dataset)
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.posix
+def test_a_symbolic_link_stays_and_the_file_it_names_is_written(dataset, tmp_path):
+    for name in ("run.nc", "run.ckpt", "sweep"):
+        (tmp_path / name).symlink_to(tmp_path / "scratch" / name)
+    save(dataset, tmp_path / "run.nc")
+    chain = Chain(size=3)
+    simulate(chain, duration=100, checkpoint=tmp_path / "run.ckpt", progress=False)
+    run_cases([Case("force_balance", chain, {})], tmp_path / "sweep", progress=False)
+    assert all(path.is_symlink() for path in tmp_path.iterdir() if path.name != "scratch")
+    assert len(list(tmp_path.glob("scratch/*"))) == 3
+    (tmp_path / "loop.nc").symlink_to(tmp_path / "loop.nc")
+    (tmp_path / "null.nc").symlink_to(os.devnull)
+    for name in ("loop.nc", "null.nc"):
+        with pytest.raises(OSError, match=f"a link to itself, not a file: .*{name}"):
+            save(dataset, tmp_path / name)
+
+
+@pytest.mark.parametrize("letter", ["a", "\N{GREEK SMALL LETTER GAMMA}"])
+def test_a_name_may_be_as_long_as_the_disk_allows(letter, dataset, tmp_path):
+    path = tmp_path / f"{letter * (252 // len(os.fsencode(letter)))}.nc"
+    assert load(save(dataset, path)).identical(dataset)
+    with locked(path), pytest.raises(BlockingIOError), locked(path):
+        pass
 
 
 def test_foreign_files_are_refused(dataset, tmp_path):
