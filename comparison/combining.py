@@ -46,6 +46,7 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
         same particles, positions or times.
     """
     if isinstance(runs, xr.Dataset) and "seed" in runs.dims:
+        require(runs, (), "runs")
         for text in runs.get("provenance", xr.DataArray("")).values.flat:
             if text and "snapshots" not in json.loads(text):
                 raise ValueError(f"combine {_NO_RUN}")
@@ -90,8 +91,9 @@ def _check(runs: Sequence[xr.Dataset]) -> list[dict[str, Any]]:
         raise ValueError("runs must have variables with error bars: nothing was measured in these")
     provenances: list[dict[str, Any]] = []
     for run in runs:
-        require(run, _names(first) if provenances else ())
-        require(first, _names(run) if provenances else ())
+        who = f"runs[{len(provenances)}]"
+        require(run, _names(first) if provenances else (), who)
+        require(first, _names(run) if provenances else (), "runs[0]")
         chain, provenance = chain_of(run), json.loads(run.attrs["provenance"])
         if run.attrs.get("source") != "simulation" or "snapshots" not in provenance:
             raise ValueError(f"combine {_NO_RUN}")

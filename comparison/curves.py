@@ -87,7 +87,7 @@ def _as_dataset(label: str, data: Any, quantity: str, abscissa: str) -> xr.Datas
 def _find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Curve:
     if quantity == "velocity_density" and "provenance" in dataset.attrs:
         dataset = _of_any_rod(dataset)
-    require(dataset, (quantity,))
+    require(dataset, (quantity,), label)
     values = dataset[quantity]
     if values.ndim != 1:
         raise ValueError(

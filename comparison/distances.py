@@ -112,6 +112,7 @@ def deviations(group: xr.DataTree) -> dict[str, Deviations]:
     results = {str(name): each.to_dataset() for name, each in group.children.items()}
     run = results.pop("simulation")
     if run.attrs["status"] == "diverged":
+        require(run, (), "not compared with theories")
         return {}
     smoothed = smooth(run)
     return {

@@ -1,3 +1,4 @@
 from .chain import Chain as Chain
 from .storage import load as load, save as save
 from .vocabulary import chain_of as chain_of
+from .warn import DivergedError as DivergedError, DivergedWarning as DivergedWarning

@@ -26,6 +26,7 @@ import xarray as xr
 from crazybilliards.model.checks import check_path, shown
 from crazybilliards.model.locks import hidden_beside
 from crazybilliards.model.memory import require_memory
+from crazybilliards.model.warn import warn_if_diverged
 
 _CLASSIC, _NETCDF_4 = b"CDF", b"\x89HDF"  # the first bytes of a file
 _MARK = b"\ncrazybilliards-1 sha256 "
@@ -34,7 +35,7 @@ _MOST_COMPRESSED = 2000  # times; more than the 1032 of deflate, as a dimension 
 
 
 def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path:
-    """Write a result, or a tree of results, to a NetCDF file; return its path.
+    """Write a result, or a tree of them, to a NetCDF file; return its path; warn if one diverged.
 
     The file appears under its name only when it is complete: an interrupted or failed write
     leaves a former file as it was. Missing folders are made. Of a symbolic link the file that it
@@ -51,6 +52,7 @@ def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path
     if path.suffix != ".nc":
         raise ValueError(f"results are NetCDF files: the name must end in .nc, got {str(path)!r}")
     write_sealed(path, netcdf(result))
+    warn_if_diverged(result, str(path))
     return path
 
 

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 
 from crazybilliards.model.chain import Chain
 from crazybilliards.model.checks import shown
+from crazybilliards.model.warn import warn_if_diverged
 from crazybilliards.model.words import meant
 
 # name: (meaning, unit). R length, M mass, t_0 = sqrt(M/k) time.
@@ -242,10 +243,11 @@ def chain_of(dataset: xr.Dataset) -> Chain:
         raise ValueError("not a crazybilliards result: its provenance names no chain") from error
 
 
-def require(dataset: xr.Dataset, names: Iterable[str]) -> None:
+def require(dataset: xr.Dataset, names: Collection[str], who: str = "the result") -> None:
     """Raise a ValueError naming the first of ``names`` that the result lacks, or has without axes.
 
     xarray counts from 0 along an axis that has no coordinate, and these would be no positions.
+    Warn of a chain that diverged, unless all ``names`` are over time.
     """
     if not isinstance(dataset, xr.Dataset):
         raise ValueError(f"not a crazybilliards result: {shown(dataset)}")
@@ -253,9 +255,11 @@ def require(dataset: xr.Dataset, names: Iterable[str]) -> None:
         if name not in dataset:
             known = list(map(str, dataset.data_vars))
             has = ", ".join(known) or "nothing"
-            raise ValueError(f"the result has no {name!r}; it has {has}{meant(name, known)}")
+            raise ValueError(f"{who} has no {name!r}; it has {has}{meant(name, known)}")
         for axis in _AXES.intersection(map(str, dataset[name].dims)).difference(dataset.coords):
             raise ValueError(f"the {name} of the result has no coordinate {axis!r}")
+    over_time = len(names) > 0 and all("time" in dataset[name].dims for name in names)
+    warn_if_diverged(dataset, who, over_time)
 
 
 def refuse_unread(

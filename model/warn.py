@@ -4,6 +4,19 @@ from __future__ import annotations
 
 import sys
 import warnings
+from typing import Any
+
+import numpy as np
+
+
+class DivergedWarning(UserWarning):
+    """A chain diverged, and averages over time include its growth."""
+
+
+class DivergedError(RuntimeError):
+    """A chain diverged before anything was measured; ``result`` has its status and times."""
+
+    result: Any
 
 
 def warn_user(message: str, category: type[Warning] = UserWarning) -> None:
@@ -12,3 +25,12 @@ def warn_user(message: str, category: type[Warning] = UserWarning) -> None:
     while frame.f_back and str(frame.f_globals.get("__name__")).startswith("crazybilliards"):
         level, frame = level + 1, frame.f_back
     warnings.warn(message, category, stacklevel=level)
+
+
+def warn_if_diverged(result: Any, what: str, over_time: bool = False) -> None:
+    """Warn of a result of a chain that diverged, unless what is read of it is ``over_time``."""
+    diverged = np.asarray(result.attrs.get("status", result.get("status"))) == "diverged"
+    if diverged.any() and not over_time:
+        at = "see its status" if diverged.ndim else f"after t = {result.attrs['end_time']:g}"
+        text = f"{what}: a chain diverged ({at}), and averages over time include its growth"
+        warn_user(text, DivergedWarning)

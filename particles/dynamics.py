@@ -85,6 +85,7 @@ def make_dynamics(
     )
     if law.operator == TURN:  # which has the springs in its flight
         one, other = one._replace(kick=0.0), other._replace(kick=0.0)
+    speed *= math.sqrt(max(chain.mass_ratio, 1 / chain.mass_ratio))  # a heavy rod hits a light one
     fastest = _DIVERGED * speed if speed > 0 else math.inf
     inverse = inverse_masses(chain)
     propagator = make_propagator(chain, time_step)

@@ -15,7 +15,7 @@ from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_path, check_real
 from crazybilliards.model.kernels import announced
 from crazybilliards.model.randomness import Seed, seed_of
-from crazybilliards.model.warn import warn_user
+from crazybilliards.model.warn import DivergedError, DivergedWarning, warn_user
 from crazybilliards.model.words import with_hints
 from crazybilliards.particles.dynamics import Stepper
 from crazybilliards.particles.laws.law import Method
@@ -23,7 +23,7 @@ from crazybilliards.particles.observers import Observer, check_observers, find_o
 from crazybilliards.particles.run import Average, Run
 from crazybilliards.particles.running.checkpoint import Checkpoint
 from crazybilliards.particles.running.collecting import collect
-from crazybilliards.particles.running.replica import make_replicas
+from crazybilliards.particles.running.replica import NEVER, make_replicas
 from crazybilliards.particles.running.threads import run_all
 from crazybilliards.particles.stepping import compile_kernels
 
@@ -136,14 +136,13 @@ def simulate(
     -------
     xarray.Dataset
         In the common vocabulary. ``attrs["status"]`` is ``completed``, ``interrupted`` (Ctrl-C:
-        everything measured until then) or ``diverged`` (everything before the divergence).
-        ``attrs["end_time"]`` is the shortest time that any replica reached, warm-up included, or
-        the last time reported for an ensemble. A chain that diverged before anything was measured
-        has no variables (``warmup=0`` measures from the start). ``attrs["flight"]`` is ``exact``
-        or ``in steps``. ``attrs["time_step_error"]`` is the estimated relative error of the
-        smallest velocity width above 0 due to the time step: 0 if the flight was exact, NaN where
-        it is not known, as for a collision law of your own. ``attrs["relaxation_time"]`` is that
-        of the chain.
+        everything measured until then) or ``diverged`` (everything before the divergence, with a
+        ``DivergedWarning``). ``attrs["end_time"]`` is the shortest time that any replica reached,
+        warm-up included, or the last time reported for an ensemble. ``attrs["flight"]`` is
+        ``exact`` or ``in steps``. ``attrs["time_step_error"]`` is the estimated relative error of
+        the smallest velocity width above 0 due to the time step: 0 if the flight was exact, NaN
+        where it is not known, as for a collision law of your own. ``attrs["relaxation_time"]`` is
+        that of the chain.
 
         SIGTERM and SIGHUP end the program, once the checkpoint is written, unless the program
         ignores them or handles them itself. With the handler ``signal.default_int_handler`` they
@@ -155,6 +154,8 @@ def simulate(
         For a wrong argument, before any work.
     OSError
         If the checkpoint cannot be written at the start. Later this is only a warning.
+    DivergedError
+        If the chain diverged before anything was measured, a ``RuntimeError``.
     KeyboardInterrupt
         On Ctrl-C before anything was measured.
 
@@ -194,7 +195,29 @@ def simulate(
     state = None if path is None else Checkpoint(path, run, checkpoint_interval)
     with nullcontext() if state is None else state.resumed(copies):
         interrupted = run_all(copies, threads, state, progress)
-    return collect(run, copies, interrupted)
+    measured = collect(run, copies, interrupted)
+    if any(copy.reached < NEVER for copy in copies):
+        _tell_of_divergence(run, measured)
+    return measured
+
+
+def _tell_of_divergence(run: Run, measured: xr.Dataset) -> None:
+    """Warn that the chain diverged, when and why; raise if nothing was measured before."""
+    text = f"the chain diverged after t = {measured.attrs['end_time']:g}"
+    if not measured.data_vars:
+        text += f" and before the first snapshot at t = {run.times[0]:g}, so nothing was measured"
+    text += f": the time_step {run.time_step:.3g} is too long for its springs; give a shorter one"
+    if max(run.chain.restitution, run.chain.wall_restitution) > 1:
+        text = text.partition(":")[0] + (
+            ": at restitution > 1 collisions bring in more energy than the damping takes out. Take "
+            "fewer rods (critical_size(chain) estimates how many are too many), more damping, or "
+            "the start equilibrium_states(chain.replace(restitution=1), replicas)"
+        )
+    if not measured.data_vars:
+        error = DivergedError(f"{text}. To see it grow, give warmup=0 and a shorter every")
+        error.result = measured
+        raise error
+    warn_user(f"{text}. Averages over time include its growth", DivergedWarning)
 
 
 def make_run(chain: Chain, *, observe: Any, **arguments: Any) -> Run:

@@ -15,7 +15,7 @@ from crazybilliards.model.arrays import Array, check_numbers
 from crazybilliards.model.checks import check_integer, shown
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.parameters import WALLS_AND_MASSES
-from crazybilliards.model.vocabulary import refuse_unread, result
+from crazybilliards.model.vocabulary import refuse_unread, require, result
 from crazybilliards.model.warn import warn_user
 from crazybilliards.model.words import check_chain
 
@@ -156,4 +156,5 @@ def _states(start: xr.Dataset) -> list[Array]:
             raise ValueError("start is over time; choose one time, such as start.isel(time=-1)")
         if set(dims) != {"replica", "particle"}:
             raise ValueError(f"start: {name} must be over replica and particle, got {dims}")
+    require(start, names, "start")
     return [check_numbers(name, start[name].transpose("replica", ...)) for name in names]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from typer import Argument, Option
 
 from crazybilliards.apps.commands.options import Json, Output, Seed, Threads, chain_options, numbers
-from crazybilliards.apps.commands.output import DIVERGED, complain, conclude, picture, writing_to
+from crazybilliards.apps.commands.output import conclude, picture, writing_to
 from crazybilliards.apps.commands.tables import measured_table, rods_table, table
 
 if TYPE_CHECKING:
@@ -93,8 +93,6 @@ def _run_text(run: xr.Dataset) -> list[str | Table]:
         f"{run.attrs['status']} at t = {run.attrs['end_time']:g} t_0, time step {step:.3g} t_0",
         f"error of the smallest W_v due to the time step: {known}",
     ]
-    if run.attrs["status"] == "diverged":
-        complain(DIVERGED)
     if "velocity_width" in run:
         ensemble = "time" in run.velocity_width.dims
         text.append("Some rods at the last time:" if ensemble else "Some rods:")

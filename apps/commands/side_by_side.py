@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from typer import Option
 
 from crazybilliards.apps.commands.options import Json, Output, Seed, Threads, chain_options, numbers
-from crazybilliards.apps.commands.output import DIVERGED, complain, conclude, picture, writing_to
+from crazybilliards.apps.commands.output import conclude, picture, writing_to
 from crazybilliards.apps.commands.tables import table
 
 if TYPE_CHECKING:
@@ -122,8 +122,6 @@ def _deviations(over: str, tree: xr.DataTree) -> list[dict[str, Any]]:
     rows = []
     for name, group in tree.children.items():
         run = group["simulation"].to_dataset()
-        if run.attrs["status"] == "diverged":
-            complain(f"{name}: {DIVERGED}")
         named = {over: float(name.removeprefix(f"{over}_")), "status": run.attrs["status"]}
         for key, deviation in deviations(group).items():
             row = named | {"theory": key}

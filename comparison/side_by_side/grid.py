@@ -22,6 +22,7 @@ from crazybilliards.model.checks import check_integer, check_path, shown
 from crazybilliards.model.kernels import announced
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.randomness import Seed, seed_of
+from crazybilliards.model.vocabulary import require
 from crazybilliards.model.warn import warn_user
 from crazybilliards.model.words import check_chain
 from crazybilliards.particles.simulation import make_run
@@ -180,6 +181,8 @@ def _computed(
     results = {name: group for name, group in results.items() if SIMULATION in group}
     if not results:
         raise KeyboardInterrupt
+    for name, group in results.items():
+        require(group[SIMULATION], (), name)
     diverged = any(group[SIMULATION].attrs["status"] == "diverged" for group in results.values())
     return results, "diverged" if diverged and status == "completed" else status
 

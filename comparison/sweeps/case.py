@@ -26,7 +26,7 @@ from threadpoolctl import threadpool_limits
 
 from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.kinetic.accuracy import UnmeasuredWarning
-from crazybilliards.model import Chain, load
+from crazybilliards.model import Chain, DivergedError, DivergedWarning, load
 from crazybilliards.model.checks import check_choice
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.storage import load_attributes, netcdf
@@ -168,7 +168,11 @@ def compute(case: Case, source: str, threads: int = 1) -> bytes:
         # The result states that its error is unknown; a line per process would not say of which.
         warnings.simplefilter("ignore", UnmeasuredWarning)
         warnings.simplefilter("ignore", ShortRunWarning)  # said of the whole sweep
-        result = JOBS[case.job](case.chain, **how)
+        warnings.simplefilter("ignore", DivergedWarning)  # the status says it
+        try:
+            result = JOBS[case.job](case.chain, **how)
+        except DivergedError as error:
+            result = error.result
     if result.attrs["status"] == "interrupted":
         raise KeyboardInterrupt
     result.attrs |= {"case": case.canonical, "source_fingerprint": source}

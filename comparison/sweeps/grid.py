@@ -24,7 +24,7 @@ from crazybilliards.comparison.sweeps.case import (
 )
 from crazybilliards.model import Chain, load
 from crazybilliards.model.checks import as_written, check_path, is_list, shown
-from crazybilliards.model.vocabulary import ATTRIBUTES, described
+from crazybilliards.model.vocabulary import ATTRIBUTES, described, require
 from crazybilliards.model.warn import warn_user
 from crazybilliards.model.words import check_arguments
 
@@ -110,7 +110,7 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     """Read all cases of a folder into one Dataset over the parameters in which they differ.
 
     A parameter that did not exist when a file was written has its default. A warning says if
-    different source code computed the cases.
+    different source code computed the cases, and another one if chains diverged.
 
     Returns
     -------
@@ -158,6 +158,7 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
                 joined[name] = variable.fillna("")
     else:
         joined = joined.squeeze("case")
+    require(joined, (), str(folder))
     fixed = {name: value for name, value in points[0].items() if name not in names}
     return joined.assign_attrs(parameters=json.dumps(fixed, sort_keys=True))
 

@@ -77,7 +77,7 @@ from crazybilliards.model.checks import check_choice, check_integer, shown
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.parameters import WALLS_AND_MASSES
-from crazybilliards.model.vocabulary import OF_FLUID, result
+from crazybilliards.model.vocabulary import OF_FLUID, require, result
 
 Frame = Literal["label", "eulerian"]
 Evolving = Literal["evolving"]
@@ -207,7 +207,9 @@ def hydrodynamics(
         "cells": fields.cells,
     }
     errors = errors_to_state(chain, initial, fields, times, thermal=kind == "evolving")
-    return _result(chain, fields, times, method).assign_attrs(errors)
+    found = _result(chain, fields, times, method).assign_attrs(errors)
+    require(found, (), "hydrodynamics")
+    return found
 
 
 def _read_closure(

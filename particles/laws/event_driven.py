@@ -203,7 +203,7 @@ def _collide_touching(y, v, anchors, dt, law, scratch, tally, count):  # type: i
         if end - begin > INDEX(LONG):
             return collisions, merged, True
         contact = _fastest(begin, end, due, v)
-        while contact < end and collisions <= law.most:
+        while contact < end and collisions <= min(law.most, scratch.patience[0]):
             rods = _collide(contact, 0.0, y, v, anchors, dt, law, scratch, tally)
             merged |= rods[2]
             collisions += 1
@@ -216,8 +216,8 @@ def _collide_touching(y, v, anchors, dt, law, scratch, tally, count):  # type: i
 def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt``; return the collisions, or -1 if too many.
 
-    ``tally`` (an ``avalanche.Tally``) records every collision. After ``law.most`` of them the drift
-    stops, and the state must not be used.
+    ``tally`` (an ``avalanche.Tally``) records every collision. After ``law.most`` of them, or as
+    many as ``scratch.patience``, the drift stops, and the state must not be used.
     """
     size, contacts = y.size, INDEX(y.size - 1)
     due, winner = scratch.due, scratch.winner
@@ -236,7 +236,7 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
         plant(size - 1, due, winner, v)
     node, end = INDEX(size), INDEX(size) + count + _1
     scale, parts = open_calendar(dt, due, waiting, count, size, following, preceding)
-    while collisions <= law.most:
+    while collisions <= min(law.most, scratch.patience[0]):
         if tree:
             contact, now = winner[_1], due[_1]
             if now == np.inf or size == 1:
@@ -267,8 +267,9 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
             move(low, list_of(low, due[low], scale, size, parts), following, preceding)
         if high != contact:
             move(high, list_of(high, due[high], scale, size, parts), following, preceding)
-    if tree or collisions > law.most:
+    too_many = collisions > min(law.most, scratch.patience[0])
+    if tree or too_many:
         for node in range(following.size):
             following[node] = preceding[node] = node
     _finish(y, v, dt, merged, scratch)
-    return collisions if collisions <= law.most else -1
+    return -1 if too_many else collisions

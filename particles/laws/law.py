@@ -43,6 +43,8 @@ NAMES = (
     "exact flight between walls",
 )
 
+ENDLESS = 2**62  # collisions
+
 # Parameters beside ``KNOWN`` with which an operator is right, because it reads them or does not
 # depend on them: {EVENTS: {"my_own"}}.
 knows: dict[int, Set[str]] = {
@@ -88,6 +90,7 @@ class Scratch(NamedTuple):
     joint: NDArray[np.float64]  # the same of clusters, at their outermost rods
     walled: NDArray[np.float64]  # y, v and anchors of rods and walls, (3, L + 2)
     struck: NDArray[np.float64]  # a copy of what the walls received, (2, 2)
+    patience: NDArray[np.int64]  # collisions after which a step is given up; Ctrl-C lowers it, (1,)
 
 
 def inverse_masses(chain: Chain) -> NDArray[np.float64]:
@@ -98,7 +101,11 @@ def inverse_masses(chain: Chain) -> NDArray[np.float64]:
     return np.array([0.0, *inverse, 0.0]) if chain.box else inverse
 
 
-def make_scratch(rods: int, inverse: NDArray[np.float64] = np.zeros(0)) -> Scratch:  # noqa: B008
+def make_scratch(
+    rods: int,
+    inverse: NDArray[np.float64] = np.zeros(0),  # noqa: B008
+    patience: NDArray[np.int64] = np.full(1, ENDLESS),  # noqa: B008
+) -> Scratch:
     """Return the scratch space for so many rods, with two walls or not: 220 bytes a rod."""
     size = max(rods, inverse.size)
     nodes = np.arange(2 * size, dtype=np.uint64)
@@ -122,6 +129,7 @@ def make_scratch(rods: int, inverse: NDArray[np.float64] = np.zeros(0)) -> Scrat
         inverse.copy(),
         np.zeros((3, size if size > rods else 0)),
         np.zeros((2, 2)),
+        patience,
     )
 
 
@@ -181,7 +189,9 @@ def make_law(
     unequal = chain.box > 0 or chain.mass_ratio != 1
     if operator == EVENTS and chain.gap == 0 and not unequal:
         pull = 0.0  # rods with one anchor have the same acceleration where they meet
-    most = 1_000 * chain.size + 1_000_000
+    # Collisions that bring in no energy come to an end, however many they are.
+    gaining = pull > 0 or max(chain.restitution, chain.wall_restitution) > 1
+    most = 1_000 * chain.size + 1_000_000 if gaining else ENDLESS
     from_row = row_restitution(chain.restitution, chain.wall_restitution)
     around = *chain.walls, chain.wall_restitution, unequal, from_row
     exponent = chain.potential_exponent

@@ -10,6 +10,7 @@ resumed run gives the same bits as an undisturbed one.
 
 from __future__ import annotations
 
+import errno
 import io
 import json
 import time
@@ -30,6 +31,7 @@ from crazybilliards.particles.running.replica import Replica
 
 # Computed when the code is loaded: this process does not run later edits.
 _SOURCE = room_fingerprint("model", "particles")
+_LONGEST = 2.0  # seconds that a chunk may take, so that Ctrl-C need not wait for it
 
 
 class Checkpoint:
@@ -86,11 +88,15 @@ class Checkpoint:
         header = json.dumps({"identity": self.identity}).encode()
         arrays: dict[str, Any] = {"header": np.frombuffer(header, dtype=np.uint8)}
         for number, replica in enumerate(replicas):
-            with replica.lock:
+            if not replica.lock.acquire(timeout=_LONGEST):
+                raise TimeoutError(errno.ETIMEDOUT, "a time step takes very many collisions")
+            try:
                 for name, value in replica.state().items():
                     array = arrays[f"{number}/{name}"] = np.array(value)
                     if array.dtype.hasobject:  # numpy would pickle it, and not read it again
                         raise ValueError(f"a checkpoint holds arrays and numbers, {name} is none")
+            finally:
+                replica.lock.release()
         buffer = io.BytesIO()
         np.savez(buffer, **arrays)
         write_sealed(self.path, buffer.getvalue())

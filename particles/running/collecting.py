@@ -31,7 +31,9 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         end_time = times[-1] if times.size else 0.0
     else:
         counts = counts.ravel()
-        end_time = min(replica.steps for replica in replicas) * run.time_step
+        # Computed as the time of the last snapshot is, which it must not differ from by rounding.
+        steps = min(replica.steps for replica in replicas)
+        end_time = run.warmup + (steps - run.warmup_steps) / run.stride * run.every
     if interrupted and counts.sum() == 0:
         raise KeyboardInterrupt("nothing was measured yet")
     diverged = reached < NEVER

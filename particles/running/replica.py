@@ -49,6 +49,8 @@ class Replica:
         self.copy = 0  # the one under way
         self.reached = NEVER  # the first block that a diverged copy did not fill
         self.lock = Lock()  # held while a chunk is under way
+        self.patience = np.full(1, NEVER)  # see ``Scratch``
+        self.broken = False  # a step was given up, and the state is that of no time
         self._start()
 
     def _start(self) -> None:
@@ -110,7 +112,7 @@ class Replica:
             self._start()
 
     def _warm_up(self, stop: Event) -> Iterator[int]:
-        scratch = make_scratch(self.y.size, self.dynamics.inverse)
+        scratch = make_scratch(self.y.size, self.dynamics.inverse, self.patience)
         uncounted = make_tally(self.y.size, contacts=False)
         while self.steps < self.run.warmup_steps and not (self.over or stop.is_set()):
             steps = min(self._chunk(), self.run.warmup_steps - self.steps)
@@ -122,7 +124,8 @@ class Replica:
 
     def _measure(self, stop: Event) -> Iterator[int]:
         run, chunk = self.run, self._chunk()
-        scratch, tally = make_scratch(self.y.size, self.dynamics.inverse), self._tally()
+        scratch = make_scratch(self.y.size, self.dynamics.inverse, self.patience)
+        tally = self._tally()
         rows = max(min(chunk // run.stride, _ROOM // self.y.size), 1)
         y_buffer, v_buffer = np.empty((2, rows, self.y.size))
         while self.snapshots < run.snapshots and not (self.over or stop.is_set()):
@@ -178,7 +181,9 @@ class Replica:
             observer.observe(snapshots)
 
     def _diverge(self, block: int) -> None:
-        self.over, self.reached = True, min(self.reached, block)
+        self.broken = self.patience[0] < NEVER
+        if not self.broken:
+            self.over, self.reached = True, min(self.reached, block)
 
     def _tally(self) -> Tally:
         """Return the record of collisions: counts, and the arrays that observers add."""

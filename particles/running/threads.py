@@ -12,6 +12,9 @@ from crazybilliards.model.progress import progress_bar
 from crazybilliards.particles.running.checkpoint import Checkpoint
 from crazybilliards.particles.running.replica import Replica
 
+# Collisions of each rod after which a step is given up at Ctrl-C; others take seconds in all.
+_PATIENCE = 64
+
 
 def run_all(
     replicas: Sequence[Replica], threads: int, checkpoint: Checkpoint | None, progress: bool | str
@@ -51,8 +54,11 @@ def run_all(
                     signals.append(SIGINT)
                 finally:
                     stop.set()  # otherwise leaving the block would wait for the end of the run
+                    for replica in replicas:
+                        replica.patience[0] = _PATIENCE * replica.y.size
         finally:  # also where such a handler ends the program
-            if checkpoint is not None and not any(future.exception() for future in futures):
+            whole = not any(replica.broken for replica in replicas)  # else the last one stays
+            if checkpoint and whole and not any(future.exception() for future in futures):
                 checkpoint.save(replicas)
         for future in futures:
             future.result()

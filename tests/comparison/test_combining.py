@@ -5,9 +5,11 @@ import pytest
 import xarray as xr
 from small_sweeps import AtOnce, sweep
 
-from crazybilliards.comparison import combine, load_sweep, smooth
+from crazybilliards.comparison import combine, deviation, fit_arctanh, load_sweep, overlay, smooth
+from crazybilliards.comparison.distances import deviations
 from crazybilliards.comparison.sweeps import run_cases
-from crazybilliards.model import Chain, load, save
+from crazybilliards.kinetic import equilibrium, force_balance
+from crazybilliards.model import Chain, DivergedWarning, load, save
 from crazybilliards.particles import given_start, simulate
 
 QUIET = {"threads": 1, "progress": False}
@@ -140,6 +142,33 @@ def test_a_mean_of_runs_of_which_one_diverged_has_this_status(grid, tmp_path):
     run_cases(cases, tmp_path, AtOnce(), progress=False)
     bad = cases[-1].file(tmp_path)
     save(load(bad).assign_attrs(status="diverged"), bad)
-    found = combine(load_sweep(tmp_path))
+    with pytest.warns(DivergedWarning):
+        found = combine(load_sweep(tmp_path))
     status = found.get("status", xr.DataArray(found.attrs.get("status")))
     assert status.values.ravel().tolist() == ["completed"] * (status.size - 1) + ["diverged"]
+
+
+TAKERS = {  # what takes a result, here of a chain that diverged
+    "overlay": lambda run: overlay({"fast": run}, "velocity_width"),
+    "smooth": smooth,
+    "save": lambda run: save(run, "run.nc"),
+    "combine": lambda run: combine([run]),
+    "fit_arctanh": fit_arctanh,
+    "force_balance": lambda run: force_balance(CHAIN, velocity_variance=run),
+    "deviation": lambda run: deviation(equilibrium(CHAIN), run, raw=True),
+    "deviations": lambda run: deviations(xr.DataTree(children={"simulation": xr.DataTree(run)})),
+    "start": lambda run: simulate(CHAIN, start=run, duration=100, **QUIET),
+}
+
+
+@pytest.mark.filterwarnings("ignore:the error of")
+@pytest.mark.parametrize("name", TAKERS)
+def test_whatever_takes_a_chain_that_diverged_says_so(name, runs, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run = runs[0].assign(position=CHAIN.anchors + 0 * runs[0].mean_displacement)
+    if name == "start":
+        run = run.assign(velocity=run.mean_velocity)[["position", "velocity"]].expand_dims(
+            "replica"
+        )
+    with pytest.warns(DivergedWarning, match=r"a chain diverged \(after t = [\d.]+\)"):
+        TAKERS[name](run.assign_attrs(status="diverged"))

@@ -12,7 +12,7 @@ from crazybilliards.kinetic import (
 )
 from crazybilliards.kinetic.fluids.label_rates import Constants, label_rate
 from crazybilliards.kinetic.gas.collision_moments import moments_of_collisions
-from crazybilliards.model import Chain
+from crazybilliards.model import Chain, DivergedWarning
 from crazybilliards.particles import simulate
 from studies.relaxation_error import Place
 
@@ -143,7 +143,8 @@ def test_in_the_steady_state_heat_flows_to_where_collisions_take_it():
 @pytest.mark.filterwarnings("ignore:the error of the kinetic energy")
 def test_divergence_is_a_result():
     chain = Chain(size=160, restitution=1.05, damping=4.0)
-    flow = hydrodynamics(chain, displaced(chain, 0.1), 20.0, every=0.5, cells=60, **EVOLVING)
+    with pytest.warns(DivergedWarning, match="hydrodynamics: a chain diverged"):
+        flow = hydrodynamics(chain, displaced(chain, 0.1), 20.0, every=0.5, cells=60, **EVOLVING)
     assert flow.attrs["status"] == "diverged"
     assert flow.attrs["end_time"] < 20
     assert np.isfinite(flow.kinetic_energy).all()

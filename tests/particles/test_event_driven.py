@@ -137,7 +137,9 @@ def test_long_rows_of_unequal_masses_move_as_with_the_twin(around, e):
     agree(state, 0.05, e, {"around": around, "merge_speed": 0.1}, most=10**6)
 
 
-@pytest.mark.parametrize(("zeros", "collisions"), list(enumerate([3, 31, 314, 3141, 31415])))
+@pytest.mark.parametrize(
+    ("zeros", "collisions"), list(enumerate([3, 31, 314, 3141, 31415, 314159, 3141592]))
+)
 def test_a_wall_and_two_masses_count_the_digits_of_pi(zeros, collisions):
     """A rod of mass 100^n pushes one of mass 1 towards a wall (G. Galperin, 2003)."""
     alone = {"amplitude": 0, "damping": 0, "stiffness": 0}
@@ -147,4 +149,5 @@ def test_a_wall_and_two_masses_count_the_digits_of_pi(zeros, collisions):
     run = simulate(chain, duration=1000, start=start, progress=False, **seen)
     counted = 1000 * float(run.collision_rate[0] + run.wall_collision_rate[0])
     assert counted == pytest.approx(collisions, rel=1e-12)
-    np.testing.assert_allclose(run.total_energy, chain.rod_masses[1] / 2, rtol=1e-11)
+    rounding = 1e-11 + 1e-16 * collisions
+    np.testing.assert_allclose(run.total_energy, chain.rod_masses[1] / 2, rtol=rounding)

@@ -14,7 +14,7 @@ from forked import forked
 
 from crazybilliards.model import Chain
 from crazybilliards.model.storage import read_sealed
-from crazybilliards.particles import simulate
+from crazybilliards.particles import given_start, simulate
 from crazybilliards.particles.observers.widths import Widths
 
 
@@ -51,6 +51,22 @@ def test_ctrl_c_may_come_while_the_lock_of_the_threads_is_being_taken(number, mo
         run = simulate(Chain(size=10), duration=1e9, replicas=4, threads=2, progress=False)
         assert run.attrs["status"] == "interrupted"
     assert len(entries) >= number
+
+
+@pytest.mark.compiled
+@pytest.mark.posix
+def test_ctrl_c_acts_in_a_step_with_very_many_collisions(tmp_path):
+    """Here 10^10 pi of them. The checkpoint of the beginning stays."""
+    two = Chain(size=2, amplitude=0, damping=0, stiffness=0, box=60, mass_ratio=1e20)
+    start, state = given_start(two, [-27, -24], [0, -1]), tmp_path / "state"
+    how = {"every": 1, "time_step": 1, "start": start, "observe": "collisions", "progress": False}
+    simulate(two.replace(mass_ratio=1), duration=20, **how)  # compiles
+    threading.Timer(1, signal.raise_signal, [signal.SIGINT]).start()
+    with pytest.warns(RuntimeWarning, match="no checkpoint written: a time step takes very many"):
+        run = simulate(two, duration=20, checkpoint=state, checkpoint_interval=0.1, **how)
+    assert run.attrs["status"] == "interrupted"
+    assert 0 < run.attrs["end_time"] < 4
+    assert read_sealed(state)
 
 
 HANDLERS = {  # what a program does at a signal, how it then ends, and how many runs it gets
