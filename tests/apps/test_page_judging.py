@@ -47,8 +47,30 @@ for (let run = 0; run < RUNS; run++) {
 found = wrong;
 """
 
+# The error of a gas of one mass, whose force is periodic: of 11 or 22 rods blocks were periods.
+PERIODIC = """
+let wrong = 0;
+for (const size of [2, 3, 11, 20, 22, 23, 40, 60]) {
+  let deviations = 0, errors = 0;
+  for (let run = 0; run < RUNS; run++) {
+    const chain = {size, box: 3 * size + 40, mass_ratio: 1, spring: "none"};
+    const state = ChainGas.makeState(chain, run + 1);
+    const measured = new ChainMeasuring.Measurement(state, 60);
+    while (measured.blocks.length < 10) {
+      ChainGas.go(state, 5 / 3);
+      measured.add(state, 5 / 3, 1);
+    }
+    const { value, error } = measured.force();
+    deviations += (value - ChainGas.law(state)) ** 2;
+    errors += error ** 2;
+  }
+  wrong += !(Math.abs(Math.sqrt(deviations / errors) - 1) < 0.2);
+}
+found = wrong;
+"""
 
-@pytest.mark.parametrize(("script", "runs"), [(EQUAL, 300), (GASES, 200)])
+
+@pytest.mark.parametrize(("script", "runs"), [(EQUAL, 300), (GASES, 200), (PERIODIC, 100)])
 def test_fewer_than_one_verdict_in_a_hundred_is_wrong(script, runs):
     """With the page's own files, without a browser.
 

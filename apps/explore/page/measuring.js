@@ -23,15 +23,20 @@ const ChainMeasuring = (() => {
     /* Begin again: the chain was changed or touched, and has to settle. */
     restart(state) {
       this.settling = SETTLING * P.relaxationTime(state.chain);
+      this.oneMass = state.chain.mass_ratio === 1;
       // Energies are forgotten in m/(2 gamma), so that the averages of such blocks are independent.
       const relaxation = P.relaxationTime(state.chain);
-      this.blockTime = state.masses ? relaxation : Math.max((4 * P.MASS) / state.chain.damping, relaxation);
+      this.record = [[0, 0]]; // of a gas since then: the time, and the time integral of the force
+      // In a gas 7 pi are nearly 22, and ten blocks of two rods would be a whole number of periods.
+      this.blockTime = state.masses ? 1.005 * relaxation : Math.max((4 * P.MASS) / state.chain.damping, relaxation);
       this.clear();
     }
 
     clear() {
       for (const each of [this.counts, this.squares, this.middle, this.ends]) each.fill(0);
       this.samples = this.time = 0;
+      this.begun = this.record.length - 1; // where the first block does
+      this.ends = []; // of the blocks in the record
       this.blocks = []; // of mean [v^2 at the border, v^2 in the centre], of a gas [force, kurtosis]
       this.block = [0, 0, 0]; // sums of both, and the time of the present block
     }
@@ -54,11 +59,16 @@ const ChainMeasuring = (() => {
       }
       this.samples++;
       this.time += elapsed;
-      const block = this.block, means = [borderOf(size), centreOf(size)].map((rods) => meanSquare(state.v, rods));
-      (state.masses ? ChainGas.seen(state, elapsed) : means).forEach((mean, k) => { block[k] += elapsed * mean; });
+      const block = this.block;
+      const means = state.masses ? ChainGas.seen(state, elapsed)
+        : [borderOf(size), centreOf(size)].map((rods) => meanSquare(state.v, rods));
+      means.forEach((mean, k) => { block[k] += elapsed * mean; });
+      const [time, sum] = this.record.at(-1);
+      if (state.masses) this.record.push([time + elapsed, sum + elapsed * means[0]]);
       block[2] += elapsed;
       if (block[2] < this.blockTime) return;
       this.blocks.push([block[0] / block[2], block[1] / block[2]]);
+      this.ends.push(this.record.length - 1);
       this.block = [0, 0, 0];
     }
 
@@ -102,10 +112,16 @@ const ChainMeasuring = (() => {
 
     /* The mean force on the two walls in the first blocks, with its standard error. With the virial
        G = sum of m y v this is P l = L T - dG/dt. The deviations of two blocks in turn cancel, but for
-       G at the first and at the last moment, and the error falls like 1/n. */
+       G at the first and at the last moment, and the error falls like 1/n. Rods of one mass pass on
+       their speed, G is periodic, and blocks near a period of it would hardly differ. The error is
+       then the scatter of averages over an equal time that begin earlier, while the gas settles. */
     force(n = this.blocks.length) {
       const { value, scatter } = mean(this.blocks.slice(0, n).map(([force]) => force));
-      return { value, error: scatter / n };
+      if (!this.oneMass || n === 0) return { value, error: scatter / n };
+      const average = (from, to) => (to[1] - from[1]) / (to[0] - from[0]), { record, begun } = this;
+      const length = this.ends[n - 1] - begun;
+      const earlier = Array.from({ length: begun + 1 }, (_, k) => average(record[k], record[k + length]));
+      return { value, error: mean(earlier).scatter };
     }
 
     /* The kurtosis of the velocities of a gas in the first blocks, with its standard error. */

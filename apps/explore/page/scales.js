@@ -46,7 +46,7 @@ const ChainScales = (() => {
   }
 
   /* The time in which a rod that meets no other forgets where it was and how fast; in a gas that in
-     which a rod of the speed 1 R/t_0 meets 22 others, and no multiple of the period of equal rods. */
+     which a rod of the speed 1 R/t_0 meets 22 others. */
   function relaxationTime(chain) {
     if (isGas(chain)) return (7 * Math.PI * freeLength(chain)) / chain.size;
     const half = chain.damping / (2 * MASS), stiff = relaxingStiffness(chain) / MASS;
