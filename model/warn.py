@@ -31,6 +31,7 @@ def warn_if_diverged(result: Any, what: str, over_time: bool = False) -> None:
     """Warn of a result of a chain that diverged, unless what is read of it is ``over_time``."""
     diverged = np.asarray(result.attrs.get("status", result.get("status"))) == "diverged"
     if diverged.any() and not over_time:
-        at = "see its status" if diverged.ndim else f"after t = {result.attrs['end_time']:g}"
+        end = result.attrs.get("end_time")  # of a single chain
+        at = "see the status" if end is None else f"after t = {end:g}"
         text = f"{what}: a chain diverged ({at}), and averages over time include its growth"
         warn_user(text, DivergedWarning)

@@ -33,7 +33,8 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         counts = counts.ravel()
         # Computed as the time of the last snapshot is, which it must not differ from by rounding.
         steps = min(replica.steps for replica in replicas)
-        end_time = run.warmup + (steps - run.warmup_steps) / run.stride * run.every
+        before = min(steps, run.warmup_steps)
+        end_time = before * run.time_step + (steps - before) / run.stride * run.every
     if interrupted and counts.sum() == 0:
         raise KeyboardInterrupt("nothing was measured yet")
     diverged = reached < NEVER
