@@ -28,7 +28,6 @@ from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, refuse_unread, re
 
 _RODS_TOLERANCE = 1e-3
 _READ = ("density", "label", "flow_velocity", "velocity_variance")
-_UNLIKE = 0.05  # of the free width: velocities and widths of rods that a start without them lacks
 _POINTS = 10_001  # from wall to wall
 _CROWDED = 1.01  # so many rods in the length of one overlap, but for errors of the grid
 _CRYSTAL = (
@@ -148,7 +147,7 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     """Check a start and make functions of it."""
     require(start, ("density",))
     own = chain_of(start) if "provenance" in start.attrs else chain  # in a quench another one
-    refuse_unread(start, "start of hydrodynamics", _READ, _lost(own, start))
+    refuse_unread(start, "start of hydrodynamics", _READ)
     if start.attrs.get("density_of") == OF_RODS and "displacement" in start:
         start = _as_a_fluid(start)
     if start.density.dims != ("x",):
@@ -183,18 +182,6 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     if (profiles["velocity_variance"](x) <= 0).any():
         raise ValueError("start: velocity_variance must be positive")
     return Start(x, CubicHermiteSpline(x, scale * label, scale * density), *profiles.values())
-
-
-def _lost(own: Chain, start: xr.Dataset) -> list[str]:
-    """Return the variables of a result that say more of its state than what is read of it."""
-    lost, W = ["heat_flux"], own.free_velocity_width
-    if "mean_velocity" in start and "flow_velocity" not in start:
-        lost += ["mean_velocity"] * bool((np.abs(start.mean_velocity) > _UNLIKE * W).any())
-    if "velocity_width" in start and "velocity_variance" not in start:
-        masses = own.rod_masses[start.particle.astype(int) - 1] / own.mass
-        widths = start.velocity_width * np.sqrt(masses)
-        lost += ["velocity_width"] * bool((np.abs(widths - W) > _UNLIKE * W).any())
-    return lost
 
 
 def _up_to_the_walls(

@@ -262,16 +262,14 @@ def require(dataset: xr.Dataset, names: Collection[str], who: str = "the result"
     warn_if_diverged(dataset, who, over_time)
 
 
-def refuse_unread(
-    given: xr.Dataset, who: str, read: Collection[str], lost: Collection[str] = ()
-) -> None:
-    """Raise a ValueError naming a variable that ``who`` does not read, and that would be lost.
+def refuse_unread(given: xr.Dataset, who: str, read: Collection[str]) -> None:
+    """Raise a ValueError naming a variable that ``who`` does not read.
 
-    A simulation or a theory may hold others, except those that are ``lost``.
+    A simulation or a theory may hold others.
     """
     is_result = given.attrs.get("source") in ("simulation", "theory")
     for name in map(str, given.data_vars):
-        if name in lost or not (is_result or name in read):
+        if not (is_result or name in read):
             raise ValueError(
                 f"{who} does not read {name!r}, it reads {', '.join(read)}; drop_vars({name!r}) "
                 f"leaves it out{meant(name, read)}"

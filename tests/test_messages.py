@@ -57,7 +57,6 @@ def names():
         "km": partial(Quantity, name="unit"),
         "pint": partial(Quantity, name="units"),
         "moved": moved,
-        "heated": exact.assign(velocity_width=2 * exact.velocity_width),
         "lags": cb.observers.TimeCorrelations,
         "in_metres": moved.assign(density=moved.density.assign_attrs(units="1/m")),
         "fits": fits,

@@ -52,7 +52,7 @@ cb.smooth(run.sel(x=slice(-1, 1))) | of the chain's 5 rods: smooth needs the who
 
 RUNS = """
 cb.simulate(chain, duration=5, every=1.0) | duration must be at least...average='ensemble'
-cb.simulate(chain, duration=1e30) | too small
+cb.simulate(chain, duration=1e30) | 1e+30 t_0, would take...steps
 cb.simulate(chain, duration=1e-3, every=1e-6) | warm-up and duration would take 1e+08 steps
 cb.simulate(chain, average="ensemble", duration=3, every=5) | every must be at most the duration
 cb.simulate(chain, time_step=5, method="contact-dynamics") | time_step must be below
@@ -83,7 +83,7 @@ cb.simulate(chain, start=start, replicas=3) | start is for replicas=1, got repli
 cb.simulate(chain, start=start * np.nan) | finite
 cb.given_start(chain, six.anchors) | position must fit...5 rods
 cb.given_start(chain, [-4, -2, 0, 1.5, 4]) | do not overlap: rods 3 and 4 of...overlap by 0.5 R
-cb.given_start(walled, chain.anchors + 2) | between the walls: centres lie within 5 of...rod 5
+cb.given_start(walled, chain.anchors + 2) | between the walls: their centres lie within 5 of...rod 5
 """
 
 COMBINED = """
@@ -139,7 +139,6 @@ cb.hydrodynamics(six, cb.displaced(chain, 1), 1) | must add up to the chain's 6 
 cb.hydrodynamics(chain, moved.assign(velocity=3.0), 1) | does not read 'velocity'...'flow_velocity'
 cb.hydrodynamics(chain, moved.assign(temperature=3.0), 1) | does not read 'temperature', it reads
 cb.hydrodynamics(chain, moved.assign(V=3.0), 1) | does not read 'V', it reads
-cb.hydrodynamics(chain, heated, 1) | does not read 'velocity_width', it reads
 cb.force_balance(chain, None, exact.velocity_width) | a DataArray must hold its values over x alone
 cb.hydrodynamics(six, start, 1) | the result has no 'density'
 cb.force_balance(six, displacement=exact) | the result has 5 particles, the chain 6

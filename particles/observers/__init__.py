@@ -94,7 +94,7 @@ def check_observers(run: Run) -> None:
         for name in sorted(names):
             other = owners.setdefault(name, observer)
             common = name == "time" and observer.shares_time and other.shares_time
-            if other is not observer and other.name == observer.name:
+            if other is not observer and type(other) is type(observer):
                 raise ValueError(f"observe holds {observer.name!r} twice; take one of them")
             if other is not observer and not common:
                 raise ValueError(

@@ -15,7 +15,8 @@ from crazybilliards.particles.laws.law import EXACT, TURN
 from crazybilliards.particles.observers.base import Integers, Variables
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import NEVER, Replica
-from crazybilliards.particles.scales import centre_width, relaxation_time, time_step_error
+from crazybilliards.particles.scales import centre_width, relaxation_time
+from crazybilliards.particles.step_error import time_step_error
 
 
 def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:

@@ -138,10 +138,11 @@ def test_runs_that_differ_in_more_than_the_seed_are_refused_unless_one_goes_on_f
 @pytest.mark.filterwarnings("ignore:restitution=")
 @pytest.mark.parametrize("grid", [{"seed": [1, 2]}, {"seed": [1, 2], "damping": [1.0, 2.0]}])
 def test_a_mean_of_runs_of_which_one_diverged_has_this_status(grid, tmp_path):
-    cases = sweep(grid=grid).cases()
+    cases = sweep(grid=grid, chain={}).cases()
     run_cases(cases, tmp_path, AtOnce(), progress=False)
     bad = cases[-1].file(tmp_path)
-    save(load(bad).assign_attrs(status="diverged"), bad)
+    with pytest.warns(DivergedWarning, match="t = "):
+        save(load(bad).assign_attrs(status="diverged"), bad)
     with pytest.warns(DivergedWarning):
         found = combine(load_sweep(tmp_path))
     status = found.get("status", xr.DataArray(found.attrs.get("status")))

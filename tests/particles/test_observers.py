@@ -105,7 +105,7 @@ def test_an_observer_is_taken_as_an_object_with_parameters():
 
 
 def test_two_observers_that_would_give_one_name_are_refused():
-    with pytest.raises(ValueError, match="would both give 'velocity_bin'"):
+    with pytest.raises(ValueError, match="holds 'velocities' twice"):
         a_run(Chain(), observe=[Velocities(bins=11), Velocities()])
 
     class OwnTimes(Energy):

@@ -46,8 +46,8 @@ def test_the_error_of_the_step_is_never_zero_where_there_is_one(chain, settings,
         pushed = given_start(chain, chain.anchors, np.arange(5.0), replicas=8)
         settings = settings | {"start": pushed}
     error = ensemble(chain, **settings).attrs["time_step_error"]
-    # Estimated from eight replicas it can be larger than 1.
-    assert 0 < error < np.inf if known else np.isnan(error)
+    # With a width estimated from eight replicas it can be larger than any that is known.
+    assert error > 0 if known else np.isnan(error)
 
 
 @pytest.mark.compiled

@@ -68,7 +68,7 @@ simulate --particles 101 | particles must ascend within 1..100
 compare --restitution 0.8,0.9 --amplitude 1,2 | several values of amplitude or of restitution, not
 relax --film | film needs --output FOLDER
 relax --output grid.toml | Not a directory: 'grid.toml'
-relax --output grid.toml/results | Not a directory: 'grid.toml/results'
+relax --output grid.toml/results | grid.toml/results'
 reproduce fig20 | no figure 'fig20'
 theory fluid | name must be one of ('equilibrium',
 theory --restitution 1.3 --damping 4 --output results | no steady state

@@ -38,6 +38,7 @@ def test_simulate_an_ensemble_without_a_file(run, tmp_path, monkeypatch):
 
 
 @pytest.mark.compiled  # uncompiled, an overflow warns
+@pytest.mark.filterwarnings("always:.* chain diverged")
 def test_a_chain_that_diverges_ends_with_status_1(run, tmp_path):
     options = ["--size", 50, "--restitution", 2, "--damping", 0.01, "--duration", 1e5]
     options += ["--warmup", 0, "--every", 0.01, "--observe", "energy"]
