@@ -64,7 +64,8 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
     provenances = _check(runs)
     snapshots = np.array([float(each["snapshots"]) for each in provenances])
     parts = [run[_names(runs[0])] for run in runs]
-    for name in {*parts[0].coords} - {"mean_position"}:
+    names = sorted({*map(str, parts[0].coords)} - {"mean_position"})
+    for name in sorted(names, key=lambda each: each not in parts[0].dims):  # axes first
         if not all(np.array_equal(parts[0][name], part[name]) for part in parts):
             raise ValueError(f"runs must have the same {name}")
     joined = xr.concat(parts, "seed", coords="different", compat="equals", join="exact")
