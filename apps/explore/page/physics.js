@@ -206,7 +206,8 @@ const ChainPhysics = (() => {
     const alone = a === contact && b === contact + 1 && held !== a && held !== b;
     const ahead = alone && chain.gap > 0
       ? springsAhead(state, contact, y[contact] + vLeft * now, now - step.duration / 2) : 0;
-    const rebound = e * (vLeft - vRight - ahead), merges = rebound <= step.mergeSpeed;
+    const rebound = e * (vLeft - vRight - ahead);
+    const merges = rebound <= step.mergeSpeed || (rebound <= ahead && e < 1);
     const apart = merges ? 0 : Math.max(rebound - ahead, 0);
     setVelocities(state, a, contact, common - apart * share, now);
     setVelocities(state, contact + 1, b, common + apart * (1 - share), now);
