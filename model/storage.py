@@ -169,10 +169,8 @@ def write_atomically(path: Path, content: bytes | None) -> None:
     OSError
         If it cannot be written, naming ``path``; a former file stays as it was.
     """
-    target, unfinished = (
-        Path(os.path.realpath(path)),
-        hidden_beside(path, f"{secrets.token_hex(4)}.part"),
-    )
+    target = Path(os.path.realpath(path))
+    unfinished = hidden_beside(path, f"{secrets.token_hex(4)}.part")
     try:
         if target.is_symlink() or (target.exists() and not target.is_file()):
             raise OSError(errno.EISDIR, "a folder, a device or a link to itself, not a file")
