@@ -83,6 +83,23 @@ def test_elastic_rods_meet_a_wall_that_absorbs_as_single_rods_do(wall, width, er
     assert alone.velocity_width.item() == pytest.approx(width, rel=error + 5 * 1.1e-3)
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize(("size", "ratio"), [(2, 1), (22, 1), (6, 3)])
+def test_without_noise_the_error_of_the_force_is_that_of_its_ends(size, ratio):
+    """Blocks of the mean would say ten times as much, or too little near a period."""
+    chain = gas(size, damping=0, mass_ratio=ratio)
+    rng = np.random.default_rng(size)
+    pulls, how = [], {"duration": 100, "every": 1, "observe": "walls"}
+    for _ in range(80):
+        velocity = rng.normal(size=size) / np.sqrt(chain.rod_masses)
+        law = (chain.rod_masses * velocity**2).sum() / ROOM
+        position = chain.physical(np.sort(rng.uniform(*chain.walls, size)))
+        start = given_start(chain, position, velocity, replicas=1)
+        run = simulate(chain, start=start, **how)
+        pulls.append((run.wall_force - law) / run.wall_force_error)
+    assert 0.8 < np.sqrt(np.square(pulls).mean()) < 1.25
+
+
 @pytest.mark.parametrize("time_step", [1.0, 0.25, 0.01])
 @pytest.mark.parametrize("e", [1.0, 0.9, 0.5])
 def test_two_rods_that_fly_to_a_wall_that_absorbs_both_stop_there(e, time_step):
