@@ -14,7 +14,6 @@ from crazybilliards.model.checks import is_list, shown
 from crazybilliards.model.vocabulary import require
 from crazybilliards.particles.start import digest, replica_starts
 
-_LISTS = ("seed", "ended")  # of the runs in a mean
 _NO_RUN = "takes results of simulate: other error bars do not fall with the number of results"
 
 
@@ -45,12 +44,12 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
         unless this is the last snapshot of another one of them; if they are not measured at the
         same particles, positions or times.
     """
-    if isinstance(runs, xr.Dataset) and "seed" in runs.dims:
+    if isinstance(runs, xr.Dataset) and "seed" in runs.dims and "provenance" in runs:
         require(runs, (), "runs")
-        for text in runs.get("provenance", xr.DataArray("")).values.flat:
-            if text and "snapshots" not in json.loads(text):
+        for text in filter(None, runs.provenance.values.flat):
+            if "snapshots" not in json.loads(text):
                 raise ValueError(f"combine {_NO_RUN}")
-        if "provenance" in runs and runs.provenance.dims == ("seed",):
+        if runs.provenance.dims == ("seed",):
             return combine(_cases(runs))
         return _mean(runs, xr.ones_like(runs.seed, dtype=float)).assign(_status(runs))
     if isinstance(runs, xr.Dataset) or not is_list(runs) or len(runs) == 0:
@@ -59,9 +58,7 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
             f"{shown(runs)}"
         )
     runs = list[xr.Dataset](runs)
-    if any(isinstance(run, xr.Dataset) and "seed" in run.dims for run in runs):
-        raise ValueError("runs must each be one result: combine every sweep first, then these")
-    provenances = _check(runs)
+    provenances, origin = _check(runs)
     snapshots = np.array([float(each["snapshots"]) for each in provenances])
     parts = [run[_names(runs[0])] for run in runs]
     names = sorted({*map(str, parts[0].coords)} - {"mean_position"})
@@ -72,29 +69,34 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
     found = _mean(joined, xr.DataArray(snapshots, dims="seed"))
     if all(run.sizes.get("block", 0) > 1 for run in runs):
         found["density_block"] = _blocks(runs, snapshots / snapshots.sum(), found.density)
-    common = {k: v for k, v in provenances[0].items() if all(v == p.get(k) for p in provenances)}
-    common |= {name: provenances[0].get(name) for name in ("start", "schedule")}
-    common |= {name: [one for each in provenances for one in each[name]] for name in _LISTS}
+    common = _common(provenances) | {name: origin.get(name) for name in ("start", "schedule")}
+    for name in ("seed", "ended"):  # of a mean they are lists
+        common[name] = [one for each in provenances for one in each[name]]
     common["snapshots"] = int(snapshots.sum())
     errors = [run.attrs.get("time_step_error", np.nan) for run in runs]
     return found.assign_attrs(
-        {k: v for k, v in runs[0].attrs.items() if all(v == run.attrs.get(k) for run in runs)},
+        _common([run.attrs for run in runs]),
         status=next((s for run in runs if (s := run.attrs["status"]) != "completed"), "completed"),
         time_step_error=float(np.max(errors)),  # NaN, not known, if one of them is
         provenance=json.dumps(common, sort_keys=True),
     )
 
 
-def _check(runs: Sequence[xr.Dataset]) -> list[dict[str, Any]]:
-    """Return what is known about the runs, or raise a ValueError if their mean has no meaning."""
-    first: xr.Dataset = runs[0]
+def _common(several: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    return {k: v for k, v in several[0].items() if all(v == each.get(k) for each in several)}
+
+
+def _check(runs: Sequence[xr.Dataset]) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+    """Return what is known of the runs and of one without others before it; ValueErrors."""
+    first = runs[0]
+    if any(isinstance(run, xr.Dataset) and "seed" in run.dims for run in runs):
+        raise ValueError("runs must each be one result: combine every sweep first, then these")
     if not any(_names(run) for run in runs):
         raise ValueError("runs must have variables with error bars: nothing was measured in these")
     provenances: list[dict[str, Any]] = []
-    for run in runs:
-        who = f"runs[{len(provenances)}]"
-        require(run, _names(first) if provenances else (), who)
-        require(first, _names(run) if provenances else (), "runs[0]")
+    for number, run in enumerate(runs):
+        require(run, _names(first) if number else (), f"runs[{number}]")
+        require(first, _names(run) if number else (), "runs[0]")
         chain, provenance = chain_of(run), json.loads(run.attrs["provenance"])
         if run.attrs.get("source") != "simulation" or "snapshots" not in provenance:
             raise ValueError(f"combine {_NO_RUN}")
@@ -102,45 +104,48 @@ def _check(runs: Sequence[xr.Dataset]) -> list[dict[str, Any]]:
             raise ValueError("combine takes runs before their densities are smoothed")
         if chain != chain_of(first):
             raise ValueError(f"runs must be of one chain, got {chain_of(first)} and {chain}")
-        if not isinstance(provenance["seed"], list):  # of a mean they are lists already
-            ended = [_end(run)] if {"position", "velocity"} <= {*run} else []
-            provenance |= {"seed": [provenance["seed"]], "ended": ended}
-        provenance.setdefault("ended", [])
+        if not isinstance(provenance["seed"], list):
+            provenance |= {"seed": [provenance["seed"]], "ended": _ends(run)}
+        provenance.setdefault("ended", [])  # means of version 0.5 have none
         for seed in provenance["seed"]:
             if any(seed in other["seed"] for other in provenances):
                 raise ValueError(f"runs must have other seeds, got {shown(seed)} twice")
         provenances.append(provenance)
     ends = {end for each in provenances for end in each["ended"]}
     # A run that goes on from another one of them has no warm-up of its own.
-    first_of_all = min(provenances, key=lambda each: each.get("start") in ends)
+    origin = min(provenances, key=lambda each: each.get("start") in ends)
+    wanted = _decisive(origin)
     for each in provenances:
         free = ("start", "warm-up") if each.get("start") in ends else ()
-        for name, of in _differences(first_of_all, each).items():
-            if name not in free:
+        for name, value in _decisive(each).items():
+            if value != wanted[name] and name not in free:
+                of = f"{shown(wanted[name])} and {shown(value)}"
                 raise ValueError(f"runs must differ in the seed only, not in {name}: got {of}")
-    provenances[0] |= {name: first_of_all.get(name) for name in ("start", "schedule")}
-    return provenances
+    return provenances, origin
 
 
-def _differences(one: dict[str, Any], other: dict[str, Any]) -> dict[str, str]:
-    """Return what decides the means and is not the same, as "this and that" by its name."""
-    had, has = ({**each, **each.get("schedule", {})} for each in (one, other))
-    for each in (had, has):
-        for name, steps in {"every": "stride", "warm-up": "warmup_steps"}.items():
-            each[name] = each.get(steps, 0) * each.get("time_step", 0)
-    return {
-        name.replace("_", " "): f"{shown(had.get(name))} and {shown(has.get(name))}"
-        for name in ("method", "stepper", "merging", "time_step", "every", "warm-up", "start")
-        if had.get(name) != has.get(name)
+def _decisive(provenance: dict[str, Any]) -> dict[str, Any]:
+    """Return what decides the means of a run, apart from its chain, by the names for a message."""
+    known = provenance | provenance.get("schedule", {})
+    step = known.get("time_step", 0)
+    return {name: known.get(name) for name in ("method", "stepper", "merging")} | {
+        "time step": step,
+        "every": step * known.get("stride", 0),
+        "warm-up": step * known.get("warmup_steps", 0),
+        "start": known.get("start"),
     }
 
 
-def _end(run: xr.Dataset) -> str:
-    """Return the start, as in a provenance, of a run that continues this one."""
+def _ends(run: xr.Dataset) -> list[str]:
+    """Return the start, as in a provenance, of a run that continues this one, if it has states."""
+    chain = chain_of(run)
+    states = {"position", "velocity"} <= {*run} and "replica" in run.position.dims
+    if not states or run.sizes.get("particle") != chain.size:
+        return []
     last = run.isel(time=slice(-1, None)).squeeze("time") if "time" in run.dims else run
-    if last.sizes["particle"] != chain_of(run).size or not np.isfinite(last.velocity).all():
-        return ""
-    return f"sha256 {digest(replica_starts(chain_of(run), last, last.sizes['replica'])).hex()}"
+    if not np.isfinite(last.velocity).all():
+        return []
+    return [f"sha256 {digest(replica_starts(chain, last, last.sizes['replica'])).hex()}"]
 
 
 def _cases(grid: xr.Dataset) -> list[xr.Dataset]:
@@ -156,13 +161,12 @@ def _cases(grid: xr.Dataset) -> list[xr.Dataset]:
 
 def _status(grid: xr.Dataset) -> dict[str, xr.DataArray]:
     """Return what a mean over seeds has of the status of its cases, and of their largest error."""
-    found: dict[str, Any] = {}
     present = grid.provenance != ""
-    for status in ("completed", "interrupted", "diverged"):
-        has = (grid.status == status).any("seed")
-        found["status"] = xr.where(has, status, found.get("status", ""))
+    status = xr.where(present.any("seed"), "completed", "")
+    for worse in ("interrupted", "diverged"):
+        status = xr.where((grid.status == worse).any("seed"), worse, status)
     error = grid.time_step_error.where(present, -np.inf).max("seed", skipna=False)
-    return {**found, "time_step_error": error.where(np.isfinite(error))}
+    return {"status": status, "time_step_error": error.where(np.isfinite(error))}
 
 
 def _names(run: xr.Dataset) -> list[str]:
@@ -199,11 +203,10 @@ def _mean(joined: xr.Dataset, weights: xr.DataArray) -> xr.Dataset:
             variance = mean((error**2).where(error.notnull(), np.inf).where(values.notnull()), 2)
             error = variance.where(np.isfinite(variance)) ** 0.5
             found[f"{name}_error"] = error.assign_attrs(joined[f"{name}_error"].attrs)
-    for key, place in joined.coords.items():
-        name = str(key)
-        if "seed" in place.dims and name != "seed":  # others than mean_position are all the same
-            moved = mean(place) if name == "mean_position" else place.max("seed")
-            found = found.assign_coords({name: moved.assign_attrs(place.attrs)})
+    for axis, place in joined.coords.items():
+        if "seed" in place.dims and axis != "seed":  # others than mean_position are all the same
+            moved = mean(place) if axis == "mean_position" else place.max("seed")
+            found = found.assign_coords({axis: moved.assign_attrs(place.attrs)})
     return found
 
 
@@ -211,11 +214,12 @@ def _blocks(
     runs: Sequence[xr.Dataset], weights: np.ndarray[Any, Any], density: xr.DataArray
 ) -> xr.DataArray:
     """Return blocks about the common density whose scatter gives the error of the mean."""
-    total = sum(run.sizes["block"] for run in runs)
-    parts = []
-    for run, weight in zip(runs, weights, strict=True):
-        blocks, number = run.density_block, run.sizes["block"]
-        scale = weight * np.sqrt(total * (total - 1) / (number * (number - 1)))
-        parts.append(density + scale * (blocks - blocks.mean("block")))
+    numbers = np.array([run.sizes["block"] for run in runs])
+    total = numbers.sum()
+    scales = weights * np.sqrt(total * (total - 1) / (numbers * (numbers - 1)))
+    parts = [
+        density + scale * (run.density_block - run.density_block.mean("block"))
+        for run, scale in zip(runs, scales, strict=True)
+    ]
     joined = xr.concat(parts, "block").transpose("block", ...)
     return joined.assign_attrs(runs[0].density_block.attrs)

@@ -21,7 +21,6 @@ import xarray as xr
 from scipy.ndimage import convolve1d
 
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import deposit, position_grid, require_all_held, require_even
 from crazybilliards.model.vocabulary import require, result
 
@@ -65,20 +64,16 @@ def smooth(source: xr.Dataset) -> xr.Dataset:
     What is smoothed already, which its attribute ``smoothed`` says, is not smoothed again. A grid
     that was cut or thinned is refused: smooth the whole result first.
     """
-    if source.attrs.get("smoothed") == _TWICE:
+    done = source.attrs.get("smoothed")
+    if done == _TWICE:
         return source
-    if source.attrs.get("smoothed") == _ONCE:
-        once = _whole(source, "smooth")
-    else:
-        once = _covered(source, "smooth")
+    once = _whole(source, "smooth") if done == _ONCE else _covered(source, "smooth")
     return _box(once).assign_attrs(smoothed=_TWICE)
 
 
 def require_same_smoothing(results: Mapping[str, xr.Dataset]) -> None:
     """Raise a ValueError if some densities are smoothed and others are not, or in another way."""
-    ways = {
-        label: result.attrs.get("smoothed", "not smoothed") for label, result in results.items()
-    }
+    ways = {label: each.attrs.get("smoothed", "not smoothed") for label, each in results.items()}
     if len(set(ways.values())) > 1:
         listed = "; ".join(f"{label}: {way}" for label, way in ways.items())
         raise ValueError(f"the densities are not smoothed alike ({listed}); take cb.smooth of all")
@@ -123,15 +118,11 @@ def _whole(source: xr.Dataset, who: str) -> xr.Dataset:
 
 def _box(source: xr.Dataset) -> xr.Dataset:
     """Convolve density (and block densities, hence the error) with a box of length 2R."""
-    length = 2 * chain_of(source).radius
-    n = round(length / float(source.x[1] - source.x[0]))
-
-    def average(values: Array) -> Array:
-        return convolve1d(values, np.full(n, 1 / n), axis=-1, mode="constant")
-
+    n = round(2 * chain_of(source).radius / float(source.x[1] - source.x[0]))
     convolved = source.drop_vars(set(source.data_vars) - _SMOOTHED - {"outside", "rods"})
     for name in _SMOOTHED & set(convolved.data_vars):
-        convolved[name] = convolved[name].copy(data=average(source[name].values))
+        values = convolve1d(source[name].values, np.full(n, 1 / n), axis=-1, mode="constant")
+        convolved[name] = convolved[name].copy(data=values)
     if "density_block" in convolved:
         blocks = convolved.density_block
         # Not by their std(): older versions of xarray warn if there is one block only.
@@ -147,8 +138,7 @@ def _hat_density_of_states(chain: Chain, source: xr.Dataset) -> xr.Dataset:
     reach = float(np.abs(positions - chain.anchors[observed]).max()) + chain.radius
     x = position_grid(chain, reach)
     weights = np.zeros(x.size)
-    outside = deposit(positions.ravel(), x[0], x[1] - x[0], weights)
-    if outside:
+    if deposit(positions.ravel(), x[0], x[1] - x[0], weights):
         raise ValueError("the states hold positions that are not finite")
     density = weights / (x[1] - x[0]) / (positions.size / observed.size)
     return result(

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.model.arrays import check_numbers
 from crazybilliards.model.checks import shown
 from crazybilliards.model.vocabulary import chain_of, require, unit_of
@@ -59,14 +60,24 @@ def find_curves(results: Mapping[str, Any], quantity: str, along: str) -> dict[s
     """Return a quantity of results, and of data of the reader's own, as curves by their labels.
 
     ``along`` is the abscissa of the particles; columns have that of the other curves. Raise a
-    ValueError if one lacks the quantity, or has it over several dimensions.
+    ValueError if one lacks the quantity, has it over several dimensions, or is of another kind.
     """
     curves: dict[str, Curve] = {}
+    ours: dict[str, xr.Dataset] = {}  # not data of the reader's own
     abscissa = "x"
     for label in sorted(results, key=lambda label: not isinstance(results[label], xr.Dataset)):
         dataset = _as_dataset(label, results[label], quantity, abscissa)
         curves[label] = _find_curve(label, dataset, quantity, along)
         abscissa = str(curves[label].abscissa.name)
+        if "source" in dataset.attrs:
+            ours[label] = dataset
+    if quantity == "density":
+        require_same_smoothing(ours)
+    of_all = [n for n, each in ours.items() if "particle" in each[quantity].dims]
+    others = {n: each for n, each in ours.items() if "particle" not in each.dims}
+    of_one = [n for n, each in others.items() if "particle" in each.coords]
+    if of_all and of_one:
+        raise ValueError(f"{quantity}: {of_one[0]} is of one rod, {of_all[0]} of all rods")
     return {label: curves[label] for label in results}
 
 

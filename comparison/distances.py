@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.comparison.coverage import require_same_smoothing, smooth
 from crazybilliards.comparison.widths import WidthDeviation, width_deviation
-from crazybilliards.model import Chain, chain_of
+from crazybilliards.model import chain_of
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.grid import require_even
@@ -84,11 +84,12 @@ def deviation(
         raise ValueError(
             "the densities are not smoothed: take cb.smooth of both, or raw=True to compare spikes"
         )
-    _say_what_differs(chain_of(result), chain)
+    mine, others = chain_of(result).parameters(), chain.parameters()
+    if differ := [f"{n} {mine[n]} and {others[n]}" for n in mine if mine[n] != others[n]]:
+        warn_user(f"the two results are of different chains: {', '.join(differ)}")
     difference, error, either = _differences(result, reference, floor)
     differences = difference[either] if either.any() else np.zeros(1)
-    known = np.isfinite(error)
-    in_errors = difference[known] / error[known]
+    in_errors = (difference / error)[np.isfinite(error)]
     spacing = float(reference.x[1] - reference.x[0])
     share = np.abs(difference).sum() * chain.close_packed_density * spacing / chain.size
     return Deviation(
@@ -145,7 +146,11 @@ def _differences(
         for dataset in (result, reference)
     )
     a, b = xr.align(ours.density, theirs.density, join="outer", fill_value=0.0)
-    squared_error = (_squared_error(ours, a) + _squared_error(theirs, b)).values
+    squared_error = sum(
+        (each.density_error**2).reindex_like(a, fill_value=0.0).values
+        for each in (ours, theirs)
+        if "density_error" in each
+    ) + np.zeros(a.shape)
     high = [(density > floor * unit).values for density in (a, b)]
     reliable = squared_error <= np.square(_RELIABLE * np.maximum(a.values, b.values))
     known = high[0] & high[1] & (squared_error > 0) & reliable
@@ -175,22 +180,6 @@ def _require_same_rods(
         held = (f"{float(each.max()):.4g}" for each in (ours, theirs))
         where = "" if alike else "; their grids end at other places: if x was cut, cut both alike"
         raise ValueError(f"the two densities hold {' and '.join(held)} rods{where}")
-
-
-def _say_what_differs(ours: Chain, theirs: Chain) -> None:
-    """Warn once if two densities are of different chains."""
-    mine, others = ours.parameters(), theirs.parameters()
-    differ = [
-        f"{name} {mine[name]} and {others[name]}" for name in mine if mine[name] != others[name]
-    ]
-    if differ:
-        warn_user(f"the two results are of different chains: {', '.join(differ)}")
-
-
-def _squared_error(dataset: xr.Dataset, like: xr.DataArray) -> xr.DataArray:
-    if "density_error" not in dataset:
-        return xr.zeros_like(like)
-    return (dataset.density_error**2).reindex_like(like, fill_value=0.0)
 
 
 def distances_in_plot(

@@ -13,7 +13,6 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.container import ErrorbarContainer
 from numpy.typing import ArrayLike
 
-from crazybilliards.comparison.coverage import require_same_smoothing
 from crazybilliards.comparison.curves import find_curves, shared_label
 from crazybilliards.model.checks import check_choice, shown
 
@@ -42,15 +41,15 @@ def overlay(
     ----------
     results
         ``{label: result}``. Simulations are drawn as symbols with their standard errors, theories
-        as lines, in the order given and in the colours of the current style. Of more than 60 values
-        all are drawn as a thin line, and evenly spaced ones also as symbols. Data of your own, in
-        the same units, are a Dataset or a DataArray with a coordinate of the same name, or two
-        columns such as ``(x, density)``: lines, and symbols if a Dataset has DENSITY_error, say.
-        Whether they are smoothed like the results is not known.
+        as lines, in the order given. Of more than 60 values all are drawn as a thin line, and
+        evenly spaced ones also as symbols. Data of your own, in the same units, are a Dataset or a
+        DataArray with a coordinate of the same name, or two columns such as ``(x, density)``:
+        lines, and symbols if a Dataset has DENSITY_error, say. Whether they are smoothed like the
+        results is not known.
     quantity
         A variable over one dimension, such as x, time, particle, mode or velocity. Densities must
-        be smoothed all or not at all. ``velocity_density`` is that of a rod picked at random, the
-        mean over all rods, unless one particle was chosen.
+        be smoothed all or not at all. ``velocity_density`` is the mean over all rods, unless one
+        particle was chosen.
     along
         Abscissa of a quantity over particle: i_n in -1..1, or the mean position of the rods. A
         contact lies at the i_n half way between its rods.
@@ -64,8 +63,7 @@ def overlay(
     ------
     ValueError
         If ``results`` are not given by labels, if one lacks the quantity, has it in another unit
-        or over another or several dimensions: one time of a density over time and x must be chosen
-        first. If ``style`` names no result.
+        or over another or several dimensions, or if ``style`` names no result.
 
     Returns
     -------
@@ -82,11 +80,8 @@ def overlay(
         )
     check_choice("along", along, get_args(Along))
     curves = find_curves(results, quantity, along)
-    abscissas = {label: curve.abscissa for label, curve in curves.items()}
-    ordinates = {label: curve.values for label, curve in curves.items()}
-    names = {"xlabel": shared_label(abscissas), "ylabel": shared_label(ordinates)}
-    ours: Any = {n: each for n, each in results.items() if "source" in getattr(each, "attrs", {})}
-    _require_same_kind(ours, quantity)
+    xlabel = shared_label({label: curve.abscissa for label, curve in curves.items()})
+    ylabel = shared_label({label: curve.values for label, curve in curves.items()})
     style = style or {}
     for label in style:
         check_choice("style: a label", label, results)
@@ -103,26 +98,12 @@ def overlay(
             draw_measured(ax, abscissa.values, values.values, spread, **look)
         else:
             ax.plot(abscissa, values, **{"linestyle": next(dashes)} | how)
-    ax.set(**names)
-    least = min(np.fmin.reduce(each.values, initial=np.inf) for each in ordinates.values())
+    ax.set(xlabel=xlabel, ylabel=ylabel)
+    least = min(np.fmin.reduce(each.values.values, initial=np.inf) for each in curves.values())
     if quantity.endswith("density") and least >= 0 and ax.get_autoscaley_on():
         low, high = ax.get_ylim()
         ax.set_ylim(max(low, 0.0), high, auto=None)  # the margin and error bars reach below 0
     return ax
-
-
-def _require_same_kind(results: Mapping[str, xr.Dataset], quantity: str) -> None:
-    """Raise a ValueError if results must not be drawn over one another."""
-    if quantity == "density":
-        require_same_smoothing(results)
-    of_all = [label for label, dataset in results.items() if "particle" in dataset[quantity].dims]
-    single = [  # whose coordinate is one number
-        label
-        for label, dataset in results.items()
-        if "particle" in dataset.coords and "particle" not in dataset.dims
-    ]
-    if single and of_all:
-        raise ValueError(f"{quantity}: {single[0]} is of one rod, {of_all[0]} of all rods")
 
 
 def draw_measured(
@@ -130,9 +111,8 @@ def draw_measured(
 ) -> None:
     """Draw measured values as symbols with error bars.
 
-    Of more than 60 all are drawn as a thin line, and every second, third or so on as a symbol. The
-    symbols are evenly spaced; make an axis logarithmic before. The line is pale beside symbols, so
-    that noise hides nothing. ``how``: keywords of ``errorbar``.
+    Of more than 60 all are drawn as a thin line, pale so that noise hides nothing, and evenly
+    spaced ones as symbols; make an axis logarithmic before. ``how``: keywords of ``errorbar``.
     """
     count = np.size(x)
     look: dict[str, Any] = {"linestyle": "none", "linewidth": 0.7, "markerfacecolor": "none"}
@@ -159,7 +139,7 @@ def draw_rods(
 ) -> None:
     """Draw a quantity of simulated rods, divided by ``unit``, in the look of that number.
 
-    ``how``: keywords of ``errorbar``, in place of those of that look as well.
+    ``how``: keywords of ``errorbar``, instead of those of that look as well.
     """
     values, errors = (run[name].values / unit for name in (quantity, f"{quantity}_error"))
     draw_measured(ax, run[along].values, values, errors, **_look(number) | how)
@@ -168,10 +148,7 @@ def draw_rods(
 def draw_points(
     ax: Axes, x: ArrayLike, values: ArrayLike, errors: ArrayLike, *, number: int, **how: Any
 ) -> None:
-    """Draw a few measured numbers as symbols with error bars, in the look of that number.
-
-    ``how``: keywords of ``errorbar``, in place of those of that look as well.
-    """
+    """Draw a few measured numbers as symbols with error bars; the rest as in draw_rods."""
     look = {"linestyle": "none", "markerfacecolor": "none", **_look(number)}
     ax.errorbar(x, values, errors, **look | how)
 
@@ -188,15 +165,9 @@ def mark_clipped(ax: Axes) -> None:
             continue
         symbols = container.lines[0]
         x, y = (np.asarray(values, dtype=float) for values in symbols.get_data())
+        look: Any = {"color": symbols.get_color(), "clip_on": False, "zorder": 4}
         for beyond, edge, marker in ((y > high, high, "^"), (y < low, low, "v")):
-            ax.plot(
-                x[beyond],
-                np.full(beyond.sum(), edge),
-                marker,
-                color=symbols.get_color(),
-                clip_on=False,
-                zorder=4,
-            )
+            ax.plot(x[beyond], np.full(beyond.sum(), edge), marker, **look)
 
 
 def along_the_chain(ax: Axes) -> None:

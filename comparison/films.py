@@ -1,7 +1,4 @@
-"""Films of rods, of a run or of a chain, and of the densities of a relaxation.
-
-matplotlib draws them and writes them, as mp4, gif or a page.
-"""
+"""Films of rods, of a run or of a chain, and of the densities of a relaxation: mp4, gif or page."""
 
 from __future__ import annotations
 
@@ -13,6 +10,7 @@ from collections.abc import Callable, Iterable
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -40,7 +38,6 @@ _FINER = 4  # snapshots for one picture, of a chain that is simulated
 _FADING = 0.7  # of a flash, from one picture to the next
 _GROUND, _TALL, _LOW = -0.95, 0.5, 0.25  # heights of the anchors and of the two kinds of rods
 _GREY = "#777777"
-_PAGE = '<video controls loop autoplay muted src="data:video/mp4;base64,{}"></video>\n'
 
 
 class Player:
@@ -67,8 +64,8 @@ def film(
     Every rod is drawn in its place, 2R long, in the colour of its velocity: orange moves to the
     right, blue to the left. A bar flashes where two rods met since the last picture: where they
     approached in one snapshot and separate in the next, and a straight flight would have led them
-    through one another. The walls of a box are drawn, and of two masses the heavier rods are
-    taller. A relaxation is shown by its smoothed densities, of the simulation and of all theories.
+    through one another. Of two masses the heavier rods are taller. A relaxation is shown by its
+    smoothed densities, of the simulation and of all theories.
 
     Parameters
     ----------
@@ -80,10 +77,10 @@ def film(
         The file, whose name ends in ``.mp4``, ``.gif`` or ``.html``. None: a player for a notebook.
         An mp4 needs ffmpeg, which ``pip install 'crazybilliards[film]'`` brings.
     seconds
-        Length of the film, about, with up to 25 pictures a second. A film of rods is shorter if
-        there are fewer snapshots, because it always has 25.
+        Length of the film, about, with up to 25 pictures a second. A film of rods always has 25,
+        and is shorter if there are fewer snapshots.
     duration
-        Time to simulate, of a chain [t_0]; None: 20. A result has its own.
+        Time to simulate, of a chain [t_0]; None: 20.
     springs
         Also draw the anchors, and a line from each to its rod; not of a relaxation.
     progress
@@ -92,7 +89,7 @@ def film(
     Returns
     -------
     pathlib.Path or Player
-        Where the film was written; or the player, which a notebook shows.
+        Where the film was written, or the player.
 
     Raises
     ------
@@ -100,7 +97,7 @@ def film(
         Before any work: for a result without snapshots, another name, an mp4 without ffmpeg.
         For a chain whose simulation diverges, because it has no steady state.
     OSError
-        If the file cannot be written, before any work. A former one stays as it was.
+        If the file cannot be written, before any work.
     subprocess.CalledProcessError
         If ffmpeg fails.
     """
@@ -151,23 +148,22 @@ def _short_run(chain: Chain, duration: float, pictures: int, progress: bool) -> 
 def _content(
     figure: Figure, show: Callable[[int], None], pictures: Iterable[int], suffix: str, a_second: int
 ) -> bytes:
-    """Return the content of a file whose name has this ending: a film of a figure.
+    """Return the content of a film with this ending, whose ``pictures`` ``show`` draws.
 
-    ``show(picture)`` draws each of the ``pictures``; ``a_second`` is their number. A page holds an
-    mp4, which is small, and without ffmpeg all pictures, with buttons.
+    A page holds an mp4, which is small, and without ffmpeg all pictures, with buttons.
     """
     if suffix == ".html" and has_ffmpeg():
         video = b64encode(_content(figure, show, pictures, ".mp4", a_second)).decode()
-        return _PAGE.format(video).encode()
+        source = f"data:video/mp4;base64,{video}"
+        return f'<video controls loop autoplay muted src="{source}"></video>\n'.encode()
     writer: animation.AbstractMovieWriter
     if suffix == ".mp4":
         writer = animation.FFMpegWriter(a_second, codec="h264")
     elif suffix == ".gif":
         writer = animation.PillowWriter(a_second)
     else:  # all pictures are in it, however large the page is
-        writer = animation.HTMLWriter(
-            a_second, embed_frames=True, default_mode="loop", embed_limit=math.inf
-        )
+        how: Any = {"embed_frames": True, "embed_limit": math.inf, "default_mode": "loop"}
+        writer = animation.HTMLWriter(a_second, **how)
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch, f"film{suffix}")
         with writer.saving(figure, str(file), None):
@@ -220,8 +216,8 @@ def _rod_film(
     bodies = PolyCollection([], cmap=DIRECTIONS, edgecolor="black", linewidth=0.4)
     bodies.set_norm(CenteredNorm(halfrange=fastest))
     lines = LineCollection([], color=_GREY, linewidth=1)
-    for shown in (lines, bodies):
-        ax.add_collection(shown)
+    ax.add_collection(lines)
+    ax.add_collection(bodies)
     bars = ax.scatter([], [], marker="_", linewidths=3, color="black")
     figure.colorbar(bodies, ax=ax, label=axis_label(rods.velocity), pad=0.01, extend="both")
     clock, unit = ax.text(0.0, 1.04, "", transform=ax.transAxes), unit_label(rods.time)

@@ -7,13 +7,12 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 # The signals that ask a program to end. Windows has no SIGHUP.
-_ENDING = [
-    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
-]
+_ENDING: list[int] = [s for s in signal.Signals if s.name in ("SIGINT", "SIGTERM", "SIGHUP")]
 _BETWEEN_LOOKS = 0.5  # at the parent of a process [s]
 
 
@@ -33,16 +32,24 @@ def end_with_parent() -> None:
     threading.Thread(target=follow, daemon=True).start()
 
 
-class _Interrupt:
-    """A handler that acts like Ctrl-C the first time, and then lets the results be written."""
-
-    def __init__(self) -> None:
-        self.signals: list[int] = []
+class _Interrupt(list[int]):
+    """Acts like Ctrl-C at the first signal, and then lets the results be written."""
 
     def __call__(self, number: int, _: object) -> None:
-        self.signals.append(number)
-        if len(self.signals) == 1:  # timeout and batch systems send their signals twice
+        self.append(number)
+        if len(self) == 1:  # timeout and batch systems send their signals twice
             raise KeyboardInterrupt
+
+
+@contextmanager
+def _handled(numbers: list[int], handler: Callable[[int, Any], None]) -> Iterator[None]:
+    """Handle some signals in this block."""
+    before = {number: signal.signal(number, handler) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, former in before.items():
+            signal.signal(number, former)
 
 
 @contextmanager
@@ -51,23 +58,18 @@ def terminated_like_interrupted() -> Iterator[list[int]]:
 
     They do so only where their action is the default: nohup, for example, ignores SIGHUP.
     """
-    handler = _Interrupt()
+    signals = _Interrupt()
     default = [n for n in _ENDING if signal.getsignal(n) is signal.SIG_DFL]
-    for number in default:
-        signal.signal(number, handler)
-    try:
-        yield handler.signals
-    finally:
-        for number in default:
-            signal.signal(number, signal.SIG_DFL)
+    with _handled(default, signals):
+        yield signals
 
 
 @contextmanager
 def interrupts_noted() -> Iterator[list[int]]:
     """Add Ctrl-C, SIGTERM and SIGHUP to the list that it yields; the block goes on to its end.
 
-    Neither raises an error in this block. An error that comes in the middle of the code of a lock
-    leaves the lock held, and then a pool of threads waits for it without end.
+    None raises an error in this block. An error in the middle of the code of a lock leaves the lock
+    held, and then a pool of threads waits for it without end.
 
     At the end of the block a signal whose action was the default takes its usual effect: SIGTERM,
     which batch systems send before they kill, and SIGHUP, of a lost connection, end the program.
@@ -79,19 +81,14 @@ def interrupts_noted() -> Iterator[list[int]]:
     if threading.current_thread() is threading.main_thread():  # only it may change handlers
         before = {number: signal.getsignal(number) for number in _ENDING}
     usual = (signal.SIG_DFL, signal.default_int_handler)
-    noted = [
-        n for n, handler in before.items() if handler in usual or isinstance(handler, _Interrupt)
-    ]
-    for number in noted:
-        signal.signal(number, lambda number, _: signals.append(number))
+    noted = [n for n, own in before.items() if own in usual or isinstance(own, _Interrupt)]
     try:
-        yield signals
+        with _handled(noted, lambda number, _: signals.append(number)):
+            yield signals
     finally:
-        for number in noted:
-            signal.signal(number, before[number])
         for number in dict.fromkeys(signals):
             outer = before.get(number)
             if isinstance(outer, _Interrupt):
-                outer.signals.append(number)
+                outer.append(number)
             elif outer is signal.SIG_DFL:
                 signal.raise_signal(number)

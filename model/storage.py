@@ -1,10 +1,9 @@
 """Saving and loading results: NetCDF files, written atomically and checked when read.
 
-A file is an ordinary NetCDF file followed by a trailer with the SHA-256 of everything before
-it (NetCDF readers ignore what follows the data). :func:`load` compares the two before any
-NetCDF library sees the bytes, so a damaged or truncated file can never give a wrong result.
-
-Files are NetCDF-4. The sweeps of version 0.5 and before are classic NetCDF, which is read, too.
+A file is an ordinary NetCDF-4 file followed by a trailer with the SHA-256 of everything before
+it (NetCDF readers ignore what follows the data). :func:`load` compares the two before any NetCDF
+library sees the bytes, so a damaged or truncated file can never give a wrong result. The sweeps of
+version 0.5 and before are classic NetCDF, which is read, too.
 """
 
 from __future__ import annotations
@@ -37,9 +36,8 @@ _MOST_COMPRESSED = 2000  # times; more than the 1032 of deflate, as a dimension 
 def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path:
     """Write a result, or a tree of them, to a NetCDF file; return its path; warn if one diverged.
 
-    The file appears under its name only when it is complete: an interrupted or failed write
-    leaves a former file as it was. Missing folders are made. Of a symbolic link the file that it
-    names is written.
+    The file appears under its name only when it is complete: an interrupted or failed write leaves
+    a former file as it was. Missing folders are made. A symbolic link stays: its file is written.
 
     Raises
     ------
@@ -71,18 +69,7 @@ def load(path: str | os.PathLike[str]) -> xr.Dataset | Any:
     file = check_path("path", path)
     if file.is_dir():
         raise ValueError(f"{file}: a folder, not a file; load_sweep reads the folder of a sweep")
-    content = read_sealed(file)
-    try:
-        if content.startswith(_CLASSIC):
-            return _load_classic(content)
-        _attributes(content)  # refuses what names other files
-        with xr.open_datatree(io.BytesIO(content), engine="h5netcdf") as tree:
-            for node in tree.subtree:  # tree.load() leaves out variables with the name of a group
-                node.dataset.load()
-    # The libraries may raise anything for a file with a valid checksum that is not NetCDF.
-    except Exception as error:
-        raise ValueError(f"{path}: not a result, though sealed: {shown(str(error))}") from error
-    return tree if tree.children else tree.to_dataset()
+    return _load(file)
 
 
 def load_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -90,13 +77,24 @@ def load_attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
 
     This is faster than :func:`load`, and the whole file is still checked.
     """
-    content = read_sealed(check_path("path", path))
+    return dict(_load(check_path("path", path), whole=False).attrs)
+
+
+def _load(file: Path, whole: bool = True) -> xr.Dataset | xr.DataTree:
+    content = read_sealed(file)
     try:
         if content.startswith(_CLASSIC):
-            return dict(_load_classic(content).attrs)
-        return _attributes(content)
+            return _load_classic(content)
+        attributes = _attributes(content)  # refuses what names other files
+        if not whole:
+            return xr.Dataset(attrs=attributes)
+        with xr.open_datatree(io.BytesIO(content), engine="h5netcdf") as tree:
+            for node in tree.subtree:  # tree.load() leaves out variables with the name of a group
+                node.dataset.load()
+    # The libraries may raise anything for a file with a valid checksum that is not NetCDF.
     except Exception as error:
-        raise ValueError(f"{path}: not a result, though sealed: {shown(str(error))}") from error
+        raise ValueError(f"{file}: not a result, though sealed: {shown(str(error))}") from error
+    return tree if tree.children else tree.to_dataset()
 
 
 def _attributes(content: bytes) -> dict[str, Any]:
@@ -161,13 +159,8 @@ def write_atomically(path: Path, content: bytes | None) -> None:
     """Write ``content`` beside ``path``, then rename: readers see the old file or the new one.
 
     Of a symbolic link the file that it names is written. None: only try whether it can be written.
-    The unfinished file has a name that no other write has, and is removed if writing fails. A kill
-    leaves it behind.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written, naming ``path``; a former file stays as it was.
+    The unfinished file has a name that no other write has. Only a kill leaves it behind. An OSError
+    names ``path``.
     """
     target = Path(os.path.realpath(path))
     unfinished = hidden_beside(path, f"{secrets.token_hex(4)}.part")

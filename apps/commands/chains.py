@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -71,7 +70,6 @@ def simulate(
 
     Example: crazybilliards simulate --size 50 --restitution 0.9 --output results
     """
-    from crazybilliards.model import save
     from crazybilliards.particles import simulate as run_simulation
 
     settings: dict[str, Any] = {"duration": duration, "warmup": warmup, "time_step": time_step}
@@ -80,8 +78,7 @@ def simulate(
     settings |= {"particles": None if particles is None else numbers("particles", particles, int)}
     with writing_to(output, "simulation.nc"):
         run = run_simulation(chain, seed=seed, threads=threads, checkpoint=checkpoint, **settings)
-        files = {"simulation.nc": partial(save, run)}
-        conclude(run, output, files, as_json, run.to_dict(), *_run_text(run))
+        conclude(run, output, "simulation.nc", {}, as_json, run.to_dict(), *_run_text(run))
 
 
 def _run_text(run: xr.Dataset) -> list[str | Table]:
@@ -121,18 +118,13 @@ def theory(
     """
     from crazybilliards.comparison.side_by_side import grid_figures as figures
     from crazybilliards.comparison.stationary_theories import THEORIES, theory_of
-    from crazybilliards.model import save
     from crazybilliards.model.checks import check_choice
 
-    if name is None:
-        solver = theory_of(chain)
-    else:
-        solver = THEORIES[check_choice("name", name, tuple(THEORIES))]
+    solver = THEORIES[check_choice("name", name, THEORIES)] if name else theory_of(chain)
     solver.check(chain)
     with writing_to(output, "theory.nc"):
         result = solver.solve(chain)
-        files: dict[str, Any] = {
-            "theory.nc": partial(save, result),
+        pictures = {
             "density.png": picture(figures.draw_density_alone, result, solver.title),
             "profile.png": picture(figures.draw_profile, result, solver.title),
         }
@@ -142,4 +134,4 @@ def theory(
         residual = f"residual: {result.attrs['residual']:.1e}"
         text: list[str | Table] = [title, rods_table(result), residual, errors]
         facts = {"theory": solver.name} | result.to_dict()
-        conclude(result, output, files, as_json, facts, *text)
+        conclude(result, output, "theory.nc", pictures, as_json, facts, *text)

@@ -34,9 +34,21 @@ def chain_options(*without: str, **defaults: Any) -> Callable[[Any], Callable[..
 
     ``without``: parameters that the command chooses itself; ``defaults``: values of others.
     """
+    kinds, parameters = get_type_hints(Parameters), []
+    for field in fields(Parameters):
+        if field.name in without:
+            continue
+        unit = field.metadata["unit"]
+        text = field.metadata["meaning"] + (f" [{unit}]." if unit else ".")
+        option = inspect.Parameter(
+            field.name,
+            inspect.Parameter.KEYWORD_ONLY,
+            default=defaults.get(field.name, field.default),
+            annotation=Annotated[kinds[field.name], Option(help=text)],
+        )
+        parameters.append(option)
 
     def decorated(command: Callable[..., None]) -> Callable[..., None]:
-        parameters = [option for option in _options(defaults) if option.name not in without]
 
         def with_options(**values: Any) -> None:
             from crazybilliards.model import Chain
@@ -55,22 +67,6 @@ def chain_options(*without: str, **defaults: Any) -> Callable[[Any], Callable[..
         return with_options
 
     return decorated
-
-
-def _options(defaults: dict[str, Any]) -> list[inspect.Parameter]:
-    kinds = get_type_hints(Parameters)
-    options = []
-    for field in fields(Parameters):
-        unit = field.metadata["unit"]
-        text = field.metadata["meaning"] + (f" [{unit}]." if unit else ".")
-        option = inspect.Parameter(
-            field.name,
-            inspect.Parameter.KEYWORD_ONLY,
-            default=defaults.get(field.name, field.default),
-            annotation=Annotated[kinds[field.name], Option(help=text)],
-        )
-        options.append(option)
-    return options
 
 
 def numbers(name: str, text: str, kind: Callable[[str], Any] = float) -> list[Any]:

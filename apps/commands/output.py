@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 INTERRUPTED = 130
-DIVERGED = "the simulation diverged: collisions bring in more energy than the damping takes out"
 _ANY_WIDTH = 10_000
 
 
@@ -64,22 +63,27 @@ def picture(draw: Callable[..., Figure], *arguments: Any) -> Callable[[Path], No
 def conclude(
     result: xr.Dataset | xr.DataTree,
     output: Path | None,
-    files: Mapping[str, Callable[[Path], object]],
+    name: str,
+    pictures: Mapping[str, Callable[[Path], object]],
     as_json: bool,
     facts: Mapping[str, Any],
     *text: str | Table,
 ) -> None:
     """Write files, print the text or, as JSON, the facts, and end with the status for a shell.
 
-    ``files``: what writes each file, by its name in the folder ``output``. Names get the status
-    unless the result is completed. If one cannot be written the others are, everything is printed,
-    and then the first error is raised.
+    The result is written to the file ``name`` of the folder ``output``, and then the pictures by
+    what writes each. Names get the status unless the result is completed. If one cannot be written
+    the others are, everything is printed, and then the first error is raised.
     """
+    from crazybilliards.model.storage import netcdf, write_sealed
+
+    # Not by save(), which would warn once more of a chain that diverged.
+    files = {name: lambda path: write_sealed(path, netcdf(result))} | dict(pictures)
     status, written, errors = result.attrs["status"], [], list[Exception]()
     suffix = "" if status == "completed" else f"-{status}"
     try:
-        for name, write in files.items() if output else ():
-            path = Path(output or "", name)
+        for file, write in files.items() if output else ():
+            path = Path(output or "", file)
             path = path.with_stem(path.stem + suffix)
             try:
                 write(path)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from functools import partial
-from types import ModuleType
 from typing import TYPE_CHECKING, Any, Literal
 
 from typer import Option
@@ -67,7 +66,8 @@ def compare(
 
     Example: crazybilliards compare --output results --restitution 0.9,0.95,0.98
     """
-    from crazybilliards.comparison.side_by_side import grid, grid_figures
+    from crazybilliards.comparison.side_by_side import grid
+    from crazybilliards.comparison.side_by_side import grid_figures as figures
 
     amplitude = amplitude or ("1,3,10,30" if restitution is None else "1")
     values = {
@@ -84,35 +84,18 @@ def compare(
     with writing_to(output, "comparison.nc"):
         tree = grid.compare(chain, {over: values[over]}, **how)
         rows = _deviations(over, tree)
-        columns = {name: heading for name, heading in _COLUMNS.items() if name in (over, *rows[0])}
-        shown = table(columns, rows, _CAPTION)
-        conclude(
-            tree,
-            output,
-            _comparison_files(tree, grid_figures),
-            as_json,
-            {"deviations": rows},
-            shown,
-        )
-
-
-def _comparison_files(tree: xr.DataTree, figures: ModuleType) -> dict[str, Any]:
-    """Return what writes the files of a comparison."""
-    from xarray import DataTree
-
-    from crazybilliards.model import save
-
-    # The data first: a failing picture must not cost the computation.
-    files: dict[str, Any] = {"comparison.nc": partial(save, tree)}
-    # A chain that diverged before anything was measured cannot be drawn.
-    drawn = DataTree(
-        children={n: g for n, g in tree.children.items() if "particle" in g["simulation"].dims}
-    )
-    if drawn.children:
-        files["density.png"] = picture(figures.draw_density, drawn)
-        files["displacement.png"] = picture(figures.draw_displacement, drawn)
-        files["widths.png"] = picture(figures.draw_widths, drawn)
-    return files
+        known = {name for row in rows for name in row}  # chains may have no theory
+        shown = table({n: _COLUMNS[n] for n in _COLUMNS if n in known}, rows, _CAPTION)
+        # A chain that diverged before anything was measured cannot be drawn.
+        names = {n for n, group in tree.children.items() if "particle" in group["simulation"].dims}
+        drawn = tree.filter(lambda node: node.path.split("/")[1] in names)
+        pictures = {
+            "density.png": picture(figures.draw_density, drawn),
+            "displacement.png": picture(figures.draw_displacement, drawn),
+            "widths.png": picture(figures.draw_widths, drawn),
+        }
+        facts = {"deviations": rows}
+        conclude(tree, output, "comparison.nc", pictures if names else {}, as_json, facts, shown)
 
 
 def _deviations(over: str, tree: xr.DataTree) -> list[dict[str, Any]]:
@@ -123,14 +106,15 @@ def _deviations(over: str, tree: xr.DataTree) -> list[dict[str, Any]]:
     for name, group in tree.children.items():
         run = group["simulation"].to_dataset()
         named = {over: float(name.removeprefix(f"{over}_")), "status": run.attrs["status"]}
-        for key, deviation in deviations(group).items():
+        for key, found in deviations(group).items():
             row = named | {"theory": key}
-            row |= {f"density_{name}": value for name, value in asdict(deviation.density).items()}
-            if (width := deviation.velocity_width) is not None:
-                row |= {f"velocity_width_{name}": value for name, value in width._asdict().items()}
+            row |= {f"density_{name}": value for name, value in asdict(found.density).items()}
+            if found.velocity_width:
+                width = found.velocity_width._asdict()
+                row |= {f"velocity_width_{name}": value for name, value in width.items()}
                 row["velocity_width_stated"] = group[key].attrs["velocity_width_model_error"]
             rows.append(row)
-        if len(group.children) == 1:  # no theory
+        if named["status"] == "diverged" or len(group.children) == 1:  # no theory to compare with
             rows.append(named)
     return rows
 
@@ -167,7 +151,6 @@ def relax(
     from crazybilliards.comparison import film as write_film
     from crazybilliards.comparison.side_by_side import relaxation
     from crazybilliards.comparison.side_by_side import relaxation_figures as figures
-    from crazybilliards.model import save
 
     if film and output is None:
         raise ValueError("film needs --output FOLDER, into which it is written")
@@ -177,14 +160,13 @@ def relax(
     how |= {"replicas": replicas, "seed": seed, "threads": threads}
     with writing_to(output, "relaxation.nc"):
         tree = relaxation.condensed(relaxation.compare_relaxation(chain, **how))
-        files: dict[str, Any] = {
-            "relaxation.nc": partial(save, tree),
+        pictures: dict[str, Any] = {
             "spacetime.png": picture(figures.draw_spacetime, tree),
             "profiles.png": picture(figures.draw_profiles, tree),
             "cloud.png": picture(figures.draw_cloud, tree),
         }
         if film:
-            files["relaxation.html"] = partial(write_film, tree)
+            pictures["relaxation.html"] = partial(write_film, tree)
         distances = [
             {"theory": key, "title": relaxation.LEGEND[key], "distance": distance}
             for key, distance in relaxation.label_distances(tree).items()
@@ -195,4 +177,5 @@ def relax(
             "Of the rods' mean positions in theory from those simulated, in thermal "
             "lengths, without springs in halves of the free room, at the time when it is largest.",
         )
-        conclude(tree, output, files, as_json, {"distances": distances}, shown)
+        facts = {"distances": distances}
+        conclude(tree, output, "relaxation.nc", pictures, as_json, facts, shown)

@@ -49,10 +49,11 @@ def _cell(row: Mapping[Any, Any], name: str, heading: str) -> str:
 
 def rods_table(result: xr.Dataset) -> Table:
     """Return widths and displacements of some rods, with standard errors if there are any."""
-    columns = {"particle": "particle"}
-    for name, symbol in _SYMBOLS.items():
-        if name in result:
-            columns[name] = f"{symbol} [{_unit(result[name])}]"
+    columns = {"particle": "particle"} | {
+        name: f"{symbol} [{_unit(result[name])}]"
+        for name, symbol in _SYMBOLS.items()
+        if name in result
+    }
     size = result.sizes["particle"]
     some = sorted({i - 1 for i in (1, 2, size // 10, size // 4, size // 2) if 1 <= i <= size})
     names = [name for name in (*columns, *(f"{name}_error" for name in columns)) if name in result]

@@ -28,10 +28,8 @@ from crazybilliards.model.words import check_chain
 from crazybilliards.particles.simulation import make_run
 from crazybilliards.particles.stepping import compile_kernels
 
-Folder = str | os.PathLike[str]
-
 SIMULATION = "simulation"
-# The theories of a comparison, in the order of the pictures; their titles are in TITLES.
+# The theories of a comparison, in the order of the pictures.
 ELASTIC = ("equilibrium", "force_balance", "force_balance_arctanh", "rod_by_rod")
 GAS = "steady_state"
 
@@ -42,7 +40,7 @@ def compare(
     chain: Chain,
     over: Mapping[str, ArrayLike],
     *,
-    folder: Folder | None = None,
+    folder: str | os.PathLike[str] | None = None,
     duration: float = 100_000.0,
     seed: Seed = 0,
     processes: int | None = None,
@@ -57,12 +55,11 @@ def compare(
         The chain.
     over
         A parameter of the chain and the values that replace it, a list or an array:
-        ``{"amplitude": [1, 3, 10, 30]}``. Errors of rounding are taken away, so that
-        ``numpy.arange`` gives 0.3 and not 0.30000000000000004.
+        ``{"amplitude": [1, 3, 10, 30]}``. Errors of rounding, as of ``numpy.arange``, are taken
+        away.
     folder
         Folder for the simulations and the steady states of the gas, one file each, written as soon
-        as it is done. The same call takes them from there, so nothing is lost when the program is
-        killed. None: a folder that is removed at the end.
+        as it is done. The same call takes them from there. None: one that is removed at the end.
     duration
         Simulated time of each of two replicas [t_0]; 100 000 takes 2 s for 100 rods at e = 1, and
         25 s at e = 0.9.
@@ -82,18 +79,17 @@ def compare(
         functions, results in the common vocabulary, not smoothed. If all chains have e = 1:
         ``equilibrium``, ``force_balance`` (closed by labels, without an input), ``rod_by_rod`` and,
         with springs, ``force_balance_arctanh`` (an arctanh fitted to the simulated displacements,
-        as in the paper). Otherwise, also with inelastic walls, all chains have ``steady_state``,
-        which states its errors. It is left out where it has no solution, with a warning that gives
-        the reason. ``attrs["status"]`` is ``interrupted`` if Ctrl-C ended it early, and
-        ``diverged`` if a simulation diverged. The tree then holds the results so far.
+        as in the paper). Otherwise, also with inelastic walls, all chains have ``steady_state``;
+        where it has no solution a warning gives the reason. ``attrs["status"]`` is ``interrupted``
+        if Ctrl-C ended it early, with the results so far, and ``diverged`` if a simulation
+        diverged.
 
     Raises
     ------
     ValueError
         For a wrong argument, before any work.
     RuntimeError
-        If a simulation fails, for example because its process dies. What was finished stays in
-        ``folder``.
+        If a simulation fails, for example because its process dies.
     """
     chains = _chains(chain, over)
     settings = {"duration": duration, "replicas": _REPLICAS, "seed": seed_of(seed)}
@@ -102,28 +98,21 @@ def compare(
     for name, chain in chains.items():
         walls = {"observe": ("widths", "density", "walls")} if chain.box else {}
         cases[name] = {SIMULATION: Case("simulate", chain, settings | walls)}
-        if not elastic:
-            cases[name] |= _gas_cases(chain)
+        try:
+            if not elastic:
+                cases[name][GAS] = Case(GAS, chain, {})
+        except ValueError as error:
+            _warn_of_no_gas(chain, str(error))
     results, status = _computed(cases, folder, processes, threads, progress)
-    if not elastic:
-        return _tree(results, status)
-    return elastic_tree({name: group[SIMULATION] for name, group in results.items()}, status)
+    if elastic:
+        return elastic_tree({name: group[SIMULATION] for name, group in results.items()}, status)
+    return _tree(results, status)
 
 
 def elastic_tree(runs: Mapping[str, xr.Dataset], status: str = "completed") -> xr.DataTree:
     """Compute the theories of simulated elastic chains, which are given by their names."""
-    return _tree(
-        {name: {SIMULATION: run} | _elastic_theories(run) for name, run in runs.items()}, status
-    )
-
-
-def _gas_cases(chain: Chain) -> dict[str, Case]:
-    """Return the case of the gas, if it takes the chain."""
-    try:
-        return {GAS: Case(GAS, chain, {})}
-    except ValueError as error:
-        _warn_of_no_gas(chain, str(error))
-        return {}
+    results = {name: {SIMULATION: run} | _elastic_theories(run) for name, run in runs.items()}
+    return _tree(results, status)
 
 
 def _chains(chain: Chain, over: Mapping[str, ArrayLike]) -> dict[str, Chain]:
@@ -150,7 +139,7 @@ def _chains(chain: Chain, over: Mapping[str, ArrayLike]) -> dict[str, Chain]:
 
 def _computed(
     cases: Mapping[str, Mapping[str, Case]],
-    folder: Folder | None,
+    folder: str | os.PathLike[str] | None,
     processes: int | None,
     threads: int | None,
     progress: bool,
@@ -175,30 +164,25 @@ def _computed(
             for name, group in cases.items()
         }
     for case, reason in failed.items():
-        if case.job == "simulate":
+        if case.job != GAS:
             raise RuntimeError(reason)
         _warn_of_no_gas(case.chain, reason.removeprefix("ValueError: "))
     results = {name: group for name, group in results.items() if SIMULATION in group}
     if not results:
         raise KeyboardInterrupt
     for name, group in results.items():
-        require(group[SIMULATION], (), name)
-    diverged = any(group[SIMULATION].attrs["status"] == "diverged" for group in results.values())
-    return results, "diverged" if diverged and status == "completed" else status
+        require(group[SIMULATION], (), name)  # warns if the chain diverged
+        if status == "completed":
+            status = group[SIMULATION].attrs["status"]
+    return results, status
 
 
 def _warn_of_no_gas(chain: Chain, reason: str) -> None:
     warn_user(f"e = {chain.restitution:g} has no theory: {reason}")
 
 
-def _tree(results: Mapping[str, Mapping[str, xr.Dataset]], status: str) -> xr.DataTree:
-    tree = xr.DataTree.from_dict(
-        {
-            f"{name}/{key}": result
-            for name, group in results.items()
-            for key, result in group.items()
-        }
-    )
+def _tree(results: dict[str, dict[str, xr.Dataset]], status: str) -> xr.DataTree:
+    tree = xr.DataTree.from_dict(results, nested=True)
     tree.attrs |= {"status": status, "source": "comparison"}
     return tree
 
@@ -207,11 +191,8 @@ def _elastic_theories(run: xr.Dataset) -> dict[str, xr.Dataset]:
     """Return the theories by their names; the arctanh is fitted to the run."""
     chain = chain_of(run)
     balance = force_balance(chain)
-    theories = {
-        "equilibrium": equilibrium(chain),
-        "force_balance": balance,
-        "rod_by_rod": rod_by_rod(balance),
-    }
+    theories = {"equilibrium": equilibrium(chain), "force_balance": balance}
+    theories["rod_by_rod"] = rod_by_rod(balance)
     if chain.stiffness == 0:  # displacements then have no effect
         return theories
     try:

@@ -111,7 +111,7 @@ def _reference(results: dict[str, xr.Dataset]) -> str:
 
 def _draw_best(ax: Axes, results: dict[str, xr.Dataset], quantity: str) -> None:
     """Draw the simulation and the exact equilibrium or the gas, of which a comparison has one."""
-    titles = (*(TITLES[name] for name in _BEST), SIMULATION)
+    titles = [TITLES[name] for name in (*_BEST, SIMULATION)]
     shown = {name: results[name] for name in titles if name in results}
     looks = {name: _LOOKS[name] for name in shown}
     overlay(shown, quantity, along="mean_position", ax=ax, style=looks)
@@ -155,8 +155,8 @@ def draw_widths(tree: xr.DataTree) -> Figure:
     for key in _BEST:
         if any(key in group for group in tree.children.values()):
             axes[0].plot([], [], color="0.4", label=TITLES[key])
-    axes[0].set(ylabel="velocity width $W_v/W$")
-    axes[1].set(ylabel=rf"displacement $\langle\Delta x\rangle/{symbol}$")
+    axes[0].set_ylabel("velocity width $W_v/W$")
+    axes[1].set_ylabel(rf"displacement $\langle\Delta x\rangle/{symbol}$")
     _finish_rods(axes)
     legend_above(figure, axes[0])
     return figure
@@ -175,12 +175,9 @@ def _draw_theory(
     """Draw a theory as a line in a band of the error that it states, both divided by ``unit``."""
     chain = chain_of(theory)
     values = theory[quantity].values / unit
-    name, scale = {
-        "velocity_width": ("velocity_width_model_error", values),
-        "mean_displacement": ("mean_displacement_model_error", displacement_unit(chain)[1] / unit),
-        "density": ("density_model_error", chain.close_packed_density / unit),
-    }[quantity]
-    error = theory.attrs.get(name, 0.0) * scale
+    scale: Any = {"velocity_width": values, "density": chain.close_packed_density / unit}
+    scale["mean_displacement"] = displacement_unit(chain)[1] / unit
+    error = theory.attrs.get(f"{quantity}_model_error", 0.0) * scale[quantity]
     x = theory.x if quantity == "density" else theory.normalized_particle
     ax.plot(x, values, **look)
     ax.fill_between(x, values - error, values + error, color=look["color"], alpha=0.15, linewidth=0)

@@ -117,9 +117,11 @@ def compare_relaxation(
             end = results[name].attrs["end_time"]
             raise ValueError(f"the energy diverges after t = {end:g}: give a shorter duration")
     results["rods"] = rod_by_rod(results["evolving"])
+    # Rods that exchange their names move independently on such springs.
+    free = chain.restitution == 1 and chain.gap == 0 and chain.spring == "linear"
     if has_one_mass(chain):
         results["exact"] = rod_by_rod(gas_of_points(chain, fluid, duration, every))
-    elif chain.restitution == 1 and _is_free(chain):
+    elif free and not chain.unknown():
         results["exact"] = _exact(chain, release, by, duration, every)
     results[PARTICLES] = simulate(
         chain,
@@ -134,12 +136,8 @@ def compare_relaxation(
         progress=progress and f"{replicas} chains",
     )
     tree = xr.DataTree.from_dict(results)
-    tree.attrs |= {
-        "status": results[PARTICLES].attrs["status"],
-        "source": "comparison",
-        "release": release,
-        "by": by,
-    }
+    tree.attrs |= {"status": results[PARTICLES].attrs["status"], "source": "comparison"}
+    tree.attrs |= {"release": release, "by": by}
     return tree
 
 
@@ -149,7 +147,7 @@ def condensed(tree: xr.DataTree) -> xr.DataTree:
     The densities are smoothed (:func:`crazybilliards.comparison.smooth`) and in single precision;
     other fields over x are left out.
     """
-    results = {}
+    stored = tree.copy()
     for name, group in tree.children.items():
         result = group.to_dataset()
         if "density" in result:
@@ -159,9 +157,7 @@ def condensed(tree: xr.DataTree) -> xr.DataTree:
             result.attrs["smoothed"] = density.attrs["smoothed"]
             for each in density.data_vars:
                 result[each].encoding = {"zlib": True, "shuffle": True}
-        results[str(name)] = result
-    stored = xr.DataTree.from_dict(results)
-    stored.attrs = tree.attrs
+            stored[name] = xr.DataTree(result)
     return stored
 
 
@@ -192,15 +188,9 @@ def cloud(result: xr.Dataset) -> xr.Dataset:
     if "mean_displacement_error" in result:
         shift = result.mean_displacement_error
         spread = result.displacement_width_error * result.displacement_width
-        found["centre_error"] = shift.mean("particle")
-        away = np.abs(place - centre)
-        found["cloud_width_error"] = (away * shift + spread).mean("particle") / width
+        error = (np.abs(place - centre) * shift + spread).mean("particle") / width
+        found = found.assign(centre_error=shift.mean("particle"), cloud_width_error=error)
     return found
-
-
-def _is_free(chain: Chain) -> bool:
-    """Return whether rods that exchange their names move independently on their springs."""
-    return chain.gap == 0 and chain.spring == "linear" and not chain.unknown()
 
 
 def _states(
@@ -215,10 +205,8 @@ def _states(
         places, labels = points_of(chain, fluid)
         drawn = chain.size * np.random.default_rng(seed + 2).random(y.shape)
         y = np.sort(np.interp(drawn, labels, places), axis=1)
-    if release == "compressed":
-        y = by * y
-    if release == "displaced":
-        y = y + by * chain.thermal_length
+    y = by * y if release == "compressed" else y
+    y = y + by * chain.thermal_length if release == "displaced" else y
     return states.assign(position=(("replica", "particle"), chain.physical(y)))
 
 

@@ -37,9 +37,8 @@ def draw_spacetime(tree: xr.DataTree) -> Figure:
             result.x, result.time, result.density, vmin=0, vmax=highest, rasterized=True
         )
         entitle(ax, name)
-    for ax in axes[len(densities) :]:
-        ax.remove()
-    axes = axes[: len(densities)]
+    while len(axes) > len(densities):
+        axes.pop().remove()
     for ax in axes[-columns:]:  # the lowest of each column, because the last row may be shorter
         ax.set_xlabel(axis_label(result.x))
         ax.tick_params(labelbottom=True)
@@ -79,8 +78,6 @@ def draw_cloud(tree: xr.DataTree) -> Figure:
     }
     quantities = {"cloud_width": "width of the cloud", "centre": "centre"}
     for ax, (quantity, label) in zip(axes, quantities.items(), strict=True):
-        for each in clouds.values():
-            each[quantity].attrs = {"long_name": label, "units": "1"}
         overlay(clouds, quantity, ax=ax, style=_LOOK)
         ax.set_ylabel(f"{label} / ${symbol}$")
     low, high = axes[1].get_ylim()

@@ -40,8 +40,7 @@ JOBS: dict[str, Callable[..., xr.Dataset]] = {
 }
 # Arguments that do not change the numbers, and arguments that are not plain values.
 _NO_SETTINGS = {"chain", "start", "threads", "checkpoint", "checkpoint_interval", "progress"}
-# Computed when this module is imported, together with that code: an edit during an interactive
-# session does not change it.
+# Computed together with that code, so that an edit during an interactive session changes nothing.
 _SOURCES = {
     job: room_fingerprint("model", "kinetic" if job in THEORIES else "particles") for job in JOBS
 }

@@ -172,14 +172,13 @@ def _read_case(path: Path) -> xr.Dataset:
 
 def _varied(points: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
     """Return a column for each parameter that differs between the cases, those of a chain first."""
-    table = pd.DataFrame([{k: _scalar(value) for k, value in point.items()} for point in points])
+    rows = [  # a list, which cannot be a coordinate, becomes text
+        {k: json.dumps(v) if isinstance(v, list) else as_written(v) for k, v in point.items()}
+        for point in points
+    ]
+    table = pd.DataFrame(rows)
     names = [*_CHAIN, *(name for name in table if name not in _CHAIN)]
     return table[[name for name in names if table[name].nunique(dropna=False) > 1]]
-
-
-def _scalar(value: Any) -> Any:
-    """Return a value that can be a coordinate; a list becomes text."""
-    return json.dumps(value) if isinstance(value, list) else as_written(value)
 
 
 def _with_attributes(
@@ -209,13 +208,14 @@ def _alike(results: Sequence[xr.Dataset]) -> Sequence[xr.Dataset]:
     for dimension in sorted(dimensions - {"particle"}):
         values = [result[dimension] for result in results if dimension in result.dims]
         if len(values) < len(results) or not all(value.equals(values[0]) for value in values):
-            results = [_numbered(result, dimension) for result in results]
+            results = [
+                _numbered(result, dimension) if dimension in result.dims else result
+                for result in results
+            ]
     return results
 
 
 def _numbered(result: xr.Dataset, dimension: str) -> xr.Dataset:
-    if dimension not in result.dims:
-        return result
     places = range(result.sizes[dimension])
     if dimension not in result.coords:
         return result.assign_coords({dimension: places})

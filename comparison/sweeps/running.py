@@ -83,7 +83,8 @@ def run_cases(
     failed: dict[Case, str] = {}
     with locked(place), progress_bar(progress, total=len(cases), unit="case") as bar:
         missing = _missing(cases, place, keep_old, bar)
-        computed = _computed_by(executor, missing) if executor else _computed_here(missing, threads)
+        here = ((case, _result(compute, case, case.source, threads)) for case in missing)
+        computed = _computed_by(executor, missing) if executor else here
         with closing(computed):
             for case, result in computed:
                 if isinstance(result, bytes):
@@ -97,26 +98,18 @@ def run_cases(
 
 def _missing(cases: Iterable[Case], folder: Path, keep_old: bool, bar: tqdm[Any]) -> Iterator[Case]:
     """Yield the cases that have no valid file, and warn of the first one that is replaced."""
-    replaced = False
+    warned = False
     for case in cases:
         if case.is_in(folder, keep_old=keep_old):
             bar.update()
             continue
-        if not replaced and case.file(folder).exists():
-            replaced = True
+        if not warned and case.file(folder).exists():
+            warned = True
             warn_user(
                 f"{case.file(folder)}: damaged or of other source code; computing it anew, and "
                 "others like it (keep_old=True, --keep-old: keep those of other source code)"
             )
         yield case
-
-
-def _computed_here(
-    cases: Iterable[Case], threads: int
-) -> Generator[tuple[Case, bytes | Exception]]:
-    """Compute cases in this process; yield each with its file, or with the error instead."""
-    for case in cases:
-        yield case, _result(compute, case, case.source, threads)
 
 
 def _computed_by(
