@@ -20,8 +20,7 @@ _NO_RUN = "takes results of simulate: other error bars do not fall with the numb
 def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
     """Return the mean of runs of one chain with other seeds, as one result.
 
-    ``runs.mean("seed")`` of xarray takes the mean of the error bars too, which are those of one
-    run. Here a run has the weight w of its number of snapshots, and errors add as independent ones:
+    A run has the weight w of its number of snapshots, and errors add as independent ones:
     e^2 = sum w_i^2 e_i^2. Of a width, such as ``velocity_width``, the mean square is taken.
 
     Parameters

@@ -8,8 +8,7 @@ same steps: for small A the rods form a near-crystal, and their bare density is 
 Beyond its grid a density is 0, so each step needs a grid that holds all rods.
 
 On the package's grid (nodes at multiples of h = 2R/n, n odd) the first step is exact for points
-kept in hat weights, because the covered fraction of the bin around a node is the mean of the n hats
-around it.
+kept in hat weights: the covered fraction of a node's bin is the mean of the n hats around it.
 """
 
 from __future__ import annotations
@@ -37,21 +36,20 @@ def coverage_density(source: xr.Dataset) -> xr.Dataset:
     source
         One of three kinds of result: a *simulation* (``density``, ``density_error``,
         ``density_block`` over x), a *theory* (``density`` and ``label`` over x), or, without a
-        density, *states* (``position``, averaged over replicas and times). Of states of some rods
-        it is the density of these rods. The other two may be over time. Their grid must be whole:
-        cut the result of this function, not its argument.
+        density, *states* (``position`` of all or some rods, averaged over replicas and times). The
+        first two may be over time. Their grid must be whole: cut the result of this function, not
+        its argument.
 
     Returns
     -------
     xarray.Dataset
-        ``density`` over x. A simulation also has ``density_error``, that of the convolved
-        density, ``density_block`` and ``outside``. ``rods``: how many rods the states had.
+        ``density`` over x. A simulation also has ``density_error``, ``density_block`` and
+        ``outside``. ``rods``: how many rods the states had.
 
     Raises
     ------
     ValueError
-        If the result holds none of these, or is smoothed already, or if its grid was cut or
-        thinned, so that it does not hold all rods.
+        If the result holds none of these, is smoothed already, or was cut or thinned.
     """
     if "smoothed" in source.attrs:
         raise ValueError("the density is smoothed already")
@@ -61,8 +59,8 @@ def coverage_density(source: xr.Dataset) -> xr.Dataset:
 def smooth(source: xr.Dataset) -> xr.Dataset:
     """Both steps of the paper: :func:`coverage_density`, then the running average over 2R.
 
-    What is smoothed already, which its attribute ``smoothed`` says, is not smoothed again. A grid
-    that was cut or thinned is refused: smooth the whole result first.
+    What is smoothed already, as its attribute ``smoothed`` says, stays. A grid that was cut or
+    thinned is refused: smooth the whole result first.
     """
     done = source.attrs.get("smoothed")
     if done == _TWICE:
@@ -154,8 +152,8 @@ def _hat_density_of_theory(source: xr.Dataset) -> xr.Dataset:
     """Hat weights of a smooth density: second differences of the integral of the label.
 
     The integral over a cell is that of the Hermite cubic from N and N' = rho at both ends, kept
-    between its bounds h N(left) and h N(right). The weights are therefore positive and add up to
-    the number of rods exactly, even if the peaks of rho are narrower than a cell.
+    between h N(left) and h N(right). So the weights are positive and add up to the number of rods
+    exactly, even if the peaks of rho are narrower than a cell.
     """
     h = float(source.x[1] - source.x[0])
     label, density = source.label.values, source.density.values

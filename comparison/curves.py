@@ -96,10 +96,11 @@ def _as_dataset(label: str, data: Any, quantity: str, abscissa: str) -> xr.Datas
 
 
 def _find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Curve:
-    if quantity == "velocity_density" and "provenance" in dataset.attrs:
-        dataset = _of_any_rod(dataset)
     require(dataset, (quantity,), label)
-    values = dataset[quantity]
+    values, error = dataset[quantity], dataset.get(f"{quantity}_error")
+    of_rods = quantity == "velocity_density" and "provenance" in dataset.attrs
+    if of_rods and values.sizes.get("particle") == chain_of(dataset).size:  # that of any rod
+        values, error = values.mean("particle").assign_attrs(values.attrs), None
     if values.ndim != 1:
         raise ValueError(
             f"{label}: {quantity} is over ({', '.join(map(str, values.dims))}); overlay draws what "
@@ -115,7 +116,6 @@ def _find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> C
             raise ValueError(f"{label}: {name} has no number that could be drawn")
     if dimension == "velocity_bin":  # the outer bins are empty
         values = values.where(values > 0)
-    error = dataset.get(f"{quantity}_error")
     measured = dataset.attrs.get("source", "simulation" if error is not None else "")
     return Curve(dataset[abscissa], values, error, measured == "simulation")
 
@@ -147,17 +147,3 @@ def unit_label(variable: xr.DataArray) -> str:
 def _set(text: str) -> str:
     """Return ``v_i+1`` and ``R^2`` in the mathtext of matplotlib; a text that has some as it is."""
     return text if "$" in text else _RAISED.sub(r"$\1{\2}$", text)
-
-
-def _of_any_rod(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the result with the velocity density of a rod that is picked at random.
-
-    It is the mean over the rods of a result that has all of them.
-    """
-    require(dataset, ("velocity_density",))
-    density = dataset.velocity_density
-    if density.sizes.get("particle", 0) != chain_of(dataset).size:
-        return dataset
-    mean = density.mean("particle").assign_attrs(density.attrs)
-    names = [name for name in dataset.data_vars if str(name).startswith("velocity_density")]
-    return dataset.drop_vars(names).assign(velocity_density=mean)

@@ -36,8 +36,8 @@ class Deviation:
         int |difference| dx / L, which is twice the share of the rods in the wrong place.
     maximum_in_errors, rms_in_errors
         The same with each difference divided by its standard error; None if neither result has
-        errors. If the two agree they are about 3 to 4.5 and 1, for 10 to 100 rods and the errors
-        from 32 to 64 blocks of a long run. A short run has fewer blocks and larger maxima.
+        errors. If the two agree they are about 3 to 4.5 and 1 for 10 to 100 rods and a long run. A
+        short run has fewer blocks and larger maxima.
     """
 
     maximum: float
@@ -52,8 +52,7 @@ def deviation(
 ) -> Deviation:
     """Compare the densities of two results, and nothing else, on their common grid.
 
-    Widths, which have one value for each rod, are compared by a division:
-    ``run.velocity_width / theory.velocity_width - 1``.
+    Widths are compared by a division: ``run.velocity_width / theory.velocity_width - 1``.
 
     Parameters
     ----------
@@ -62,9 +61,8 @@ def deviation(
         of a whole grid the density is 0; if x was cut, it must be the same in both. A warning says
         in which parameters two chains differ.
     floor
-        Differences count where either density exceeds this fraction of close packing. Differences
-        in units of errors count where both do and the error is at most a fifth of the density.
-        Elsewhere a simulation has too few rods for a reliable error bar.
+        Differences count where either density exceeds this fraction of close packing, and those
+        in units of errors where both do and the error is at most a fifth of the density.
     raw
         Compare densities of which none is smoothed. In a near-crystal the smallest shift of their
         spikes is then a large deviation.
@@ -194,8 +192,7 @@ def distances_in_plot(
     """Distances of symbols from a line in the plane of a plot, shape of ``x``.
 
     Each axis is in units of its range, by default from the least to the greatest symbol. The line
-    is given by points in order, dense enough to be joined by straight pieces. For logarithmic axes
-    give logarithms.
+    is given by points to be joined by straight pieces. For logarithmic axes give logarithms.
     """
     symbols, line = np.array([x, y], dtype=float), np.array([line_x, line_y], dtype=float)
     for axis, span in enumerate((x_range, y_range)):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from difflib import get_close_matches
 from functools import wraps
 from typing import ParamSpec, TypeVar
@@ -37,13 +37,14 @@ def meant(name: object, known: Iterable[str]) -> str:
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
-def check_arguments(owner: str, names: Iterable[str], known: Iterable[str]) -> None:
-    """Raise a ValueError for the first name of an argument that ``owner`` does not take."""
-    known = list(known)
+def check_arguments(
+    owner: str, names: Iterable[str], known: Collection[str], error: type[Exception] = ValueError
+) -> None:
+    """Raise an error for the first name of an argument that ``owner`` does not take."""
     for name in names:
         if name not in known:
             hint = meant(name, known) or f"; it takes {', '.join(known)}"
-            raise ValueError(f"{owner} has no argument {name!r}{hint}")
+            raise error(f"{owner} has no argument {name!r}{hint}")
 
 
 def with_hints(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
@@ -56,10 +57,7 @@ def with_hints(function: Callable[Arguments, Result]) -> Callable[Arguments, Res
 
     @wraps(function)
     def checked(*positional: Arguments.args, **named: Arguments.kwargs) -> Result:
-        try:
-            check_arguments(owner, named, known)
-        except ValueError as error:
-            raise TypeError(str(error)) from None
+        check_arguments(owner, named, known, TypeError)
         return function(*positional, **named)
 
     return checked

@@ -21,7 +21,7 @@ class Fit:
     """A fitted curve: call it with x to get its values.
 
     Every number is an attribute too, a standard error as ``NAME_error``: ``fit.exponent``,
-    ``fit.exponent_error``, ``fit.misfit``. The functions that fit name what theirs has.
+    ``fit.exponent_error``, ``fit.misfit``.
 
     Attributes
     ----------

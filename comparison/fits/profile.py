@@ -24,8 +24,8 @@ def fit_arctanh(source: xr.Dataset) -> Fit:
     """Fit <dx>(x) = B arctanh(C x) to the mean displacements at the mean positions.
 
     It is the fit of the paper's figure ``fig:atan``. Every rod has the same weight, because the
-    misfit is systematic and far above the error bars. The fit is defined on |x| < 1/C and can be
-    the ``displacement`` of ``force_balance``.
+    misfit is systematic and far above the error bars. The fit can be the ``displacement`` of
+    ``force_balance``.
 
     Parameters
     ----------
@@ -97,19 +97,18 @@ def fit_border_power_law(
         it depend on the size.
     weighted
         Weight the widths by their error bars, or by relative deviations for a theory, which has
-        no errors. The narrow interior then counts more. False: ordinary least squares. The paper
-        does not say which. At L = 300, e = 0 the exponent is -0.460 without weights and -0.473
-        with weights.
+        no errors. The narrow interior then counts more. The paper does not say which. At L = 300,
+        e = 0 the exponent is -0.460 without weights and -0.473 with weights.
 
     Returns
     -------
     Fit
         ``scale``, ``exponent`` and ``origin``: a [R/t_0], nu and c. The power laws begin at the
         particle numbers c and L + 1 - c, beyond the outermost rods: c < 1. The errors are standard
-        errors from the scatter about the fit. Neighbouring rods move together, so the scatter
-        between independent runs is larger. It is the better measure.
-        ``correlation``: of the errors of c and nu, typically 0.8, as a larger c goes with a flatter
-        law; 0 if c was not fitted. ``misfit``: root mean square of the relative residuals.
+        errors from the scatter about the fit. The scatter between independent runs is larger, as
+        neighbouring rods move together, and the better measure. ``correlation``: of the errors of c
+        and nu, typically 0.8; 0 if c was not fitted. ``misfit``: root mean square of the relative
+        residuals.
 
     Raises
     ------

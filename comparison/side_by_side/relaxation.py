@@ -144,8 +144,7 @@ def compare_relaxation(
 def condensed(tree: xr.DataTree) -> xr.DataTree:
     """Return what the pictures of a relaxation show, a tenth of the tree, to be stored.
 
-    The densities are smoothed (:func:`crazybilliards.comparison.smooth`) and in single precision;
-    other fields over x are left out.
+    Densities are smoothed and in single precision, and other fields over x left out.
     """
     stored = tree.copy()
     for name, group in tree.children.items():
@@ -175,8 +174,7 @@ def label_distances(tree: xr.DataTree) -> dict[str, float]:
 def cloud(result: xr.Dataset) -> xr.Dataset:
     """Centre and width of the cloud in the reduced coordinate, of any of the results [R].
 
-    Of a simulation with upper bounds of their standard errors, ``centre_error`` and
-    ``cloud_width_error``, which they would have if the errors of all rods had the same sign.
+    Of a simulation with upper bounds of their standard errors, as if all rods erred to one side.
     """
     if "cloud_width" in result:
         return result[["centre", "cloud_width"]]

@@ -4,8 +4,8 @@ The name is a hash of the job and of the parameters that differ from their defau
 stays the same when the package gets a new parameter. The random numbers of a case follow from the
 same parameters, ``seed`` among them, so the cases of a grid are independent of each other.
 
-The file holds all parameters, defaults included, and the fingerprint of the source code that
-computed it. A file of other parameters or of other source code does not count as the case's result.
+The file holds all parameters and the fingerprint of the source code that computed it. A file of
+others does not count as the case's result.
 """
 
 from __future__ import annotations
@@ -152,8 +152,7 @@ class Case:
 def compute(case: Case, source: str, threads: int = 1) -> bytes:
     """Compute a case and return its result as a NetCDF file.
 
-    ``source`` is the fingerprint of the sender's source code. A worker with other source code
-    refuses, because its result would count as one of the sender's code.
+    ``source`` is the fingerprint of the sender's source code. A worker with another one refuses.
     """
     if source != case.source:
         raise ValueError("the worker runs other source code of crazybilliards")
@@ -164,10 +163,9 @@ def compute(case: Case, source: str, threads: int = 1) -> bytes:
         how |= {"threads": threads, "progress": False}
     # Linear algebra in threads sums in another order, and it would make other workers wait.
     with threadpool_limits(1), warnings.catch_warnings():
-        # The result states that its error is unknown; a line per process would not say of which.
-        warnings.simplefilter("ignore", UnmeasuredWarning)
-        warnings.simplefilter("ignore", ShortRunWarning)  # said of the whole sweep
-        warnings.simplefilter("ignore", DivergedWarning)  # the status says it
+        # Said by the result, of the whole sweep, and by the status.
+        for told in (UnmeasuredWarning, ShortRunWarning, DivergedWarning):
+            warnings.simplefilter("ignore", told)
         try:
             result = JOBS[case.job](case.chain, **how)
         except DivergedError as error:
@@ -181,8 +179,7 @@ def compute(case: Case, source: str, threads: int = 1) -> bytes:
 def stored_parameters(attributes: Mapping[Any, Any]) -> dict[str, Any]:
     """Return the parameters of the case that a file holds, by its attributes; {} if it holds none.
 
-    Parameters that the file lacks, because they did not exist when it was written, are at their
-    defaults.
+    Parameters that did not exist when it was written are at their defaults.
     """
     try:
         stored = dict(json.loads(attributes["case"]))

@@ -109,8 +109,8 @@ def read_sweep(path: str | os.PathLike[str]) -> Sweep:
 def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     """Read all cases of a folder into one Dataset over the parameters in which they differ.
 
-    A parameter that did not exist when a file was written has its default. A warning says if
-    different source code computed the cases, and another one if chains diverged.
+    A parameter that did not exist when a file was written has its default. Warnings say if
+    different source code computed the cases, and if chains diverged.
 
     Returns
     -------
@@ -118,11 +118,11 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
         Every variable has a dimension for each parameter with more than one value, in front of
         its own dimensions. Missing cases have NaN and an empty ``status``; shorter chains are
         padded with NaN. Coordinates that depend on the case, such as x or the mean position,
-        have those dimensions too, and the dimension of x is then ``x_index``. The attributes that
-        belong to a case are variables without own dimensions: every number (``end_time``,
-        ``time_step_error``, ``residual``, ...; NaN where a case has none), ``status``,
-        ``provenance`` and ``file``, the name of its file, and every other text that differs between
-        the cases. The attribute ``parameters`` holds the common parameters as JSON.
+        have those dimensions too, and the dimension of x is then ``x_index``. The attributes of a
+        case are variables without own dimensions: every number (``end_time``, ``residual``, ...;
+        NaN where a case has none), ``status``, ``provenance`` and ``file``, the name of its file,
+        and every other text that differs between the cases. The attribute ``parameters`` holds the
+        common parameters as JSON.
 
     Raises
     ------
@@ -219,7 +219,9 @@ def _numbered(result: xr.Dataset, dimension: str) -> xr.Dataset:
     places = range(result.sizes[dimension])
     if dimension not in result.coords:
         return result.assign_coords({dimension: places})
-    values = result[dimension]
     index = f"{dimension}_index"
-    result = result.drop_vars(dimension).rename({dimension: index})
-    return result.assign_coords({index: places, dimension: (index, values.values, values.attrs)})
+    return (
+        result.drop_indexes(dimension)
+        .rename_dims({dimension: index})
+        .assign_coords({index: places})
+    )

@@ -62,20 +62,16 @@ class _Processes(ThreadPoolExecutor):
 
     def _call(self, function: Callable[..., Any], args: Any, kwargs: Any) -> Any:
         for _ in range(2):
+            if self._own.pool is None:
+                self._own.pool = ProcessPoolExecutor(1, initializer=_prepare_process)
+                self._pools.append(self._own.pool)
+            if self._killed:
+                raise RuntimeError("the processes were killed")
             try:
-                return self._process().submit(function, *args, **kwargs).result()
+                return self._own.pool.submit(function, *args, **kwargs).result()
             except BrokenProcessPool:
                 self._own.pool = None
         raise RuntimeError("its process died, and so did the next one (out of memory?)")
-
-    def _process(self) -> ProcessPoolExecutor:
-        """Return the process of this thread."""
-        if self._own.pool is None:
-            self._own.pool = ProcessPoolExecutor(1, initializer=_prepare_process)
-            self._pools.append(self._own.pool)
-        if self._killed:
-            raise RuntimeError("the processes were killed")
-        return self._own.pool
 
     def kill(self) -> None:
         """Kill the processes and give up what is submitted."""

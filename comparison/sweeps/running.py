@@ -1,8 +1,7 @@
 """Computation of the cases that a folder lacks; the file of each is written when it returns.
 
-Workers send their results back as NetCDF bytes. The caller writes each result atomically when it
-arrives. A kill at any moment therefore loses only the cases that are being computed, and the
-workers of a cluster need no common file system.
+Workers send their results back as NetCDF bytes, and the caller writes each atomically. A kill
+loses only the cases that are being computed, and a cluster needs no common file system.
 """
 
 from __future__ import annotations
@@ -57,8 +56,8 @@ def run_cases(
     threads
         Threads of each simulation in this process; no number depends on them.
     keep_old
-        Accept results that other source code of the package computed. Use it only if no number
-        depends on the edits since.
+        Accept results of other source code of the package: use it if no number depends on the
+        edits since.
     progress
         Show a progress bar with the time left, on a terminal, elsewhere a line every half minute.
 
@@ -67,8 +66,8 @@ def run_cases(
     ValueError
         For the first case that is wrong, before any work.
     RuntimeError
-        If the executor cannot be used any more, because a worker or the scheduler died. Finished
-        cases are kept. (Workers of :func:`process_pool` are replaced.)
+        If a worker, other than of :func:`process_pool`, or the scheduler died. What was finished
+        is kept.
     OSError
         If the folder cannot be written to, or another process is filling it.
     """
