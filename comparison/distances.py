@@ -144,11 +144,10 @@ def _differences(
         for dataset in (result, reference)
     )
     a, b = xr.align(ours.density, theirs.density, join="outer", fill_value=0.0)
-    squared_error = sum(
-        (each.density_error**2).reindex_like(a, fill_value=0.0).values
-        for each in (ours, theirs)
-        if "density_error" in each
-    ) + np.zeros(a.shape)
+    squares = [each.density_error**2 for each in (ours, theirs) if "density_error" in each]
+    squared_error = np.zeros(a.shape)
+    for each in squares:
+        squared_error += each.reindex_like(a, fill_value=0.0).values
     high = [(density > floor * unit).values for density in (a, b)]
     reliable = squared_error <= np.square(_RELIABLE * np.maximum(a.values, b.values))
     known = high[0] & high[1] & (squared_error > 0) & reliable

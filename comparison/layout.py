@@ -62,10 +62,5 @@ def legend_above(figure: Figure, *axes: Axes, title: str | None = None) -> None:
         return
     longest = max(len(label.replace("$", "").replace("\\", "")) for label in entries)
     columns = max(1, int(figure.get_figwidth() / (0.06 * longest + 0.4)))
-    figure.legend(
-        entries.values(),
-        entries.keys(),
-        loc="outside upper center",
-        ncols=min(columns, len(entries)),
-        title=title,
-    )
+    how: Any = {"loc": "outside upper center", "ncols": min(columns, len(entries)), "title": title}
+    figure.legend(entries.values(), entries.keys(), **how)

@@ -74,7 +74,7 @@ def least_squares(
     points: tuple[Array, Array],
     start: tuple[float, ...],
     error: Array | None = None,
-) -> tuple[Array, Array, dict[str, float]]:
+) -> tuple[Array, Array, dict[str, Any]]:
     """Fit a curve to points (x, y); return its parameters, their covariance, and the quality.
 
     Without standard errors of y the covariance follows from the scatter, and the quality is the

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -66,15 +67,11 @@ def fit_arctanh(source: xr.Dataset) -> Fit:
     (scale, q), covariance, quality = least_squares("arctanh", model, (x, displacement), start)
     steepness = float(1 / (edge * (1 + math.exp(q))))
     scale_error, q_error = np.sqrt(np.diag(covariance))
-    return Fit(
-        {"scale": float(scale), "steepness": steepness},
-        {
-            "scale": float(scale_error),
-            "steepness": float(steepness * math.exp(q) / (1 + math.exp(q)) * q_error),
-        },
-        _arctanh,
-        {**quality, "support": (-1 / steepness, 1 / steepness)},
-    )
+    steepness_error = float(steepness * math.exp(q) / (1 + math.exp(q)) * q_error)
+    parameters = {"scale": float(scale), "steepness": steepness}
+    errors = {"scale": float(scale_error), "steepness": steepness_error}
+    quality["support"] = (-1 / steepness, 1 / steepness)
+    return Fit(parameters, errors, _arctanh, quality)
 
 
 def _arctanh(x: Array, scale: float, steepness: float) -> Array:
@@ -156,27 +153,17 @@ def _best_fit(
     """Return a, nu and c, their errors, and the correlation of the last two."""
     number = 3 if shifted else 2
     bounds = ([0.0, _STEEPEST, -float(i.size)][:number], [np.inf, 0.0, 1.0][:number])
+    same: Any = {"sigma": weight, "absolute_sigma": True, "bounds": bounds, "max_nfev": 2000}
+    same["jac"] = lambda *point: _slopes_of_powers(*point)[:, :number]
+    same |= {"ftol": 1e-12, "xtol": 1e-10, "gtol": 1e-12}
     best: tuple[float, Array, Array] | None = None
     for nu, c in _STARTS if shifted else _STARTS[:1]:
         # The best scale for these two.
         unscaled = curve(i, 1.0, nu, c) / weight
         scale = float(unscaled @ (width / weight) / (unscaled @ unscaled))
         try:
-            values, covariance = curve_fit(
-                curve,
-                i,
-                width,
-                p0=(scale, nu, c)[:number],
-                sigma=weight,
-                absolute_sigma=True,
-                bounds=bounds,
-                jac=lambda *point: _slopes_of_powers(*point)[:, :number],
-                x_scale=(scale, 0.1, 1.0)[:number],
-                ftol=1e-12,
-                xtol=1e-10,
-                gtol=1e-12,
-                max_nfev=2000,
-            )
+            how: Any = {"p0": (scale, nu, c)[:number], "x_scale": (scale, 0.1, 1.0)[:number]}
+            values, covariance = curve_fit(curve, i, width, **how, **same)
         except RuntimeError:
             continue  # no fit from this start; another may succeed
         cost = float(np.sum(((curve(i, *values) - width) / weight) ** 2))

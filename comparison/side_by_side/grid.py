@@ -205,8 +205,6 @@ def _elastic_theories(run: xr.Dataset) -> dict[str, xr.Dataset]:
     # The fit at the simulated mean positions, to be drawn beside the displacements.
     fitted = fit(chain.anchors + run.mean_displacement)
     arctanh["mean_displacement"] = run.mean_displacement.copy(data=fitted)
-    arctanh.attrs |= {
-        name: getattr(fit, name)
-        for name in ("scale", "scale_error", "steepness", "steepness_error", "misfit")
-    }
+    for name in ("scale", "scale_error", "steepness", "steepness_error", "misfit"):
+        arctanh.attrs[name] = getattr(fit, name)
     return theories | {"force_balance_arctanh": arctanh}

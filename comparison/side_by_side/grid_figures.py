@@ -48,8 +48,8 @@ def draw_density(tree: xr.DataTree) -> Figure:
     the outermost three thermal lengths, at least ten radii.
     """
     figure, pairs = _pairs(tree)
-    for (whole, end), group in zip(pairs, tree.children.values(), strict=True):
-        results = {name: smooth(result) for name, result in _results(group).items()}
+    for whole, end, rough in pairs:
+        results = {name: smooth(result) for name, result in rough.items()}
         chain = chain_of(results[SIMULATION])
         density = results[_reference(results)].density
         inside = density.x.values[density > _LEAST_DRAWN * chain.close_packed_density]
@@ -59,7 +59,7 @@ def draw_density(tree: xr.DataTree) -> Figure:
         last = slice(inside[-1] - length, inside[-1])
         cut = {name: result.sel(x=last) for name, result in results.items()}
         _draw_differences(end, cut, "density", chain.close_packed_density)
-    _finish_pairs(figure, pairs, "difference at the end\n[% of close packing]")
+    _finish_pairs(figure, "difference at the end\n[% of close packing]")
     return figure
 
 
@@ -69,39 +69,38 @@ def draw_displacement(tree: xr.DataTree) -> Figure:
     The panel below has the differences of all theories.
     """
     figure, pairs = _pairs(tree)
-    for (above, below), group in zip(pairs, tree.children.values(), strict=True):
-        results = _results(group)
+    for above, below, results in pairs:
         symbol, unit = displacement_unit(chain_of(results[SIMULATION]))
         _draw_best(above, results, "mean_displacement")
         _draw_differences(below, results, "mean_displacement", unit)
-    _finish_pairs(figure, pairs, f"difference\n[% of ${symbol}$]")
+    _finish_pairs(figure, f"difference\n[% of ${symbol}$]")
     return figure
 
 
-def _pairs(tree: xr.DataTree) -> tuple[Figure, list[tuple[Axes, Axes]]]:
-    """Make two panels for each chain, one below the other, with its title."""
+def _pairs(tree: xr.DataTree) -> tuple[Figure, list[tuple[Axes, Axes, dict[str, xr.Dataset]]]]:
+    """Make two panels for each chain, one below the other; return its results by their titles."""
     number = len(tree.children)
     width = ONE_COLUMN if number == 1 else max(TWO_COLUMNS, TWO_COLUMNS / 4 * number)
     figure = Figure(figsize=(width, 3.6))
     upper, lower = figure.subplots(2, number, squeeze=False, height_ratios=(3, 2))
     if number > 1:
         letter(upper)
-    for ax, group in zip(upper, tree.children.values(), strict=True):
-        entitle(ax, _varied(group))
-    return figure, list(zip(upper, lower, strict=True))
+    pairs = []
+    for above, below, group in zip(upper, lower, tree.children.values(), strict=True):
+        entitle(above, _varied(group))
+        results = {title: group[key].to_dataset() for key, title in TITLES.items() if key in group}
+        pairs.append((above, below, results))
+    return figure, pairs
 
 
-def _finish_pairs(figure: Figure, pairs: list[tuple[Axes, Axes]], difference: str) -> None:
+def _finish_pairs(figure: Figure, difference: str) -> None:
     """Label the vertical axes at the left only, and put one legend above."""
-    for ax in (ax for pair in pairs[1:] for ax in pair):
-        ax.set_ylabel("")
-    pairs[0][1].set_ylabel(difference)
-    legend_above(figure, *pairs[0])
-
-
-def _results(group: xr.DataTree) -> dict[str, xr.Dataset]:
-    """Return the results of one chain by their titles, in drawing order."""
-    return {title: group[key].to_dataset() for key, title in TITLES.items() if key in group}
+    above, below = figure.axes[:: len(figure.axes) // 2]
+    for ax in figure.axes:
+        if ax is not above:
+            ax.set_ylabel("")
+    below.set_ylabel(difference)
+    legend_above(figure, above, below)
 
 
 def _reference(results: dict[str, xr.Dataset]) -> str:
@@ -113,8 +112,8 @@ def _draw_best(ax: Axes, results: dict[str, xr.Dataset], quantity: str) -> None:
     """Draw the simulation and the exact equilibrium or the gas, of which a comparison has one."""
     titles = [TITLES[name] for name in (*_BEST, SIMULATION)]
     shown = {name: results[name] for name in titles if name in results}
-    looks = {name: _LOOKS[name] for name in shown}
-    overlay(shown, quantity, along="mean_position", ax=ax, style=looks)
+    style = {name: _LOOKS[name] for name in shown}
+    overlay(shown, quantity, along="mean_position", ax=ax, style=style)
     ax.set_xlabel("")
 
 

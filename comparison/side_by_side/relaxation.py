@@ -105,16 +105,16 @@ def compare_relaxation(
     # The fluids take a second and are computed first, to find a wrong duration before the long run.
     results = {}
     # On labels the outermost cell would fill an empty room at a wall, and hold the others off.
-    how: Any = {"frame": "eulerian" if in_part else "label"}
+    how: Any = {"every": every, "progress": False, "frame": "eulerian" if in_part else "label"}
     for name, variance in FLUIDS.items():
         if chain.restitution != 1 and variance is None:
             continue
-        how |= {"velocity_variance": variance, "every": every, "progress": False}
-        results[name] = hydrodynamics(chain, fluid, duration, **how)
-        if results[name].attrs["status"] == "interrupted":
+        found = hydrodynamics(chain, fluid, duration, velocity_variance=variance, **how)
+        results[name], status = found, found.attrs["status"]
+        if status == "interrupted":
             raise KeyboardInterrupt("interrupted before the simulation")
-        if results[name].attrs["status"] == "diverged":
-            end = results[name].attrs["end_time"]
+        if status == "diverged":
+            end = found.attrs["end_time"]
             raise ValueError(f"the energy diverges after t = {end:g}: give a shorter duration")
     results["rods"] = rod_by_rod(results["evolving"])
     # Rods that exchange their names move independently on such springs.
@@ -123,18 +123,11 @@ def compare_relaxation(
         results["exact"] = rod_by_rod(gas_of_points(chain, fluid, duration, every))
     elif free and not chain.unknown():
         results["exact"] = _exact(chain, release, by, duration, every)
-    results[PARTICLES] = simulate(
-        chain,
-        start=_states(chain, release, by, fluid, replicas, seed),
-        replicas=replicas,
-        average="ensemble",
-        duration=duration,
-        every=every,
-        observe=("widths", "density", "energy"),
-        seed=seed,
-        threads=threads,
-        progress=progress and f"{replicas} chains",
-    )
+    how = {"duration": duration, "every": every, "replicas": replicas, "average": "ensemble"}
+    how |= {"observe": ("widths", "density", "energy"), "seed": seed, "threads": threads}
+    how |= {"progress": progress and f"{replicas} chains"}
+    start = _states(chain, release, by, fluid, replicas, seed)
+    results[PARTICLES] = simulate(chain, start=start, **how)
     tree = xr.DataTree.from_dict(results)
     tree.attrs |= {"status": results[PARTICLES].attrs["status"], "source": "comparison"}
     tree.attrs |= {"release": release, "by": by}

@@ -34,10 +34,8 @@ from crazybilliards.model.words import check_arguments
 from crazybilliards.particles import ShortRunWarning, simulate
 from crazybilliards.particles.simulation import make_run
 
-JOBS: dict[str, Callable[..., xr.Dataset]] = {
-    "simulate": simulate,
-    **{name: theory.solve for name, theory in THEORIES.items()},
-}
+JOBS: dict[str, Callable[..., xr.Dataset]] = {"simulate": simulate}
+JOBS |= {name: theory.solve for name, theory in THEORIES.items()}
 # Arguments that do not change the numbers, and arguments that are not plain values.
 _NO_SETTINGS = {"chain", "start", "threads", "checkpoint", "checkpoint_interval", "progress"}
 # Computed together with that code, so that an edit during an interactive session changes nothing.

@@ -208,20 +208,16 @@ def _alike(results: Sequence[xr.Dataset]) -> Sequence[xr.Dataset]:
     for dimension in sorted(dimensions - {"particle"}):
         values = [result[dimension] for result in results if dimension in result.dims]
         if len(values) < len(results) or not all(value.equals(values[0]) for value in values):
-            results = [
-                _numbered(result, dimension) if dimension in result.dims else result
-                for result in results
-            ]
+            results = [_numbered(result, dimension) for result in results]
     return results
 
 
 def _numbered(result: xr.Dataset, dimension: str) -> xr.Dataset:
+    if dimension not in result.dims:
+        return result
     places = range(result.sizes[dimension])
     if dimension not in result.coords:
         return result.assign_coords({dimension: places})
     index = f"{dimension}_index"
-    return (
-        result.drop_indexes(dimension)
-        .rename_dims({dimension: index})
-        .assign_coords({index: places})
-    )
+    result = result.drop_indexes(dimension).rename_dims({dimension: index})
+    return result.assign_coords({index: places})

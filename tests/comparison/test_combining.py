@@ -50,15 +50,6 @@ def test_runs_are_weighted_by_their_snapshots(runs):
     np.testing.assert_allclose(found.velocity_width_error, error, rtol=0.02)
 
 
-def test_the_pressure_of_runs_is_their_mean():
-    box = {"size": 3, "box": 9.0, "stiffness": 0.0}
-    how = {"duration": 200, "observe": ["walls"]}
-    runs = [simulate(Chain(**box), seed=s, **how, **QUIET) for s in (1, 2)]
-    found = combine(runs)
-    mean = (runs[0].wall_force + runs[1].wall_force) / 2
-    np.testing.assert_allclose(found.wall_force, mean)
-
-
 def test_a_combined_density_is_smoothed_with_its_error(runs):
     few = runs[:3]
     found, each = smooth(combine(few)), [smooth(run) for run in few]
@@ -126,6 +117,9 @@ def test_runs_that_differ_in_more_than_the_seed_are_refused_unless_one_goes_on_f
         for runs in ([one, other], [other, one], [both, other]):
             with pytest.raises(ValueError, match=f"in the seed only, not in {name}: got"):
                 combine(runs)
+    assert combine([one.isel(replica=0), two]).equals(both)
+    with pytest.raises(ValueError, match="what load_sweep returns, got a Dataset"):
+        combine(xr.concat([one, two], "seed"))
     how["warmup"] = 0.0
     on = simulate(CHAIN, seed=3, start=two.isel(time=-1), **how, **QUIET)
     whole, nested = combine([on, one, two]), combine([both, on])

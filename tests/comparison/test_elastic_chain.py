@@ -5,14 +5,12 @@ import re
 import signal
 from functools import wraps
 from pathlib import Path
-from unittest.mock import Mock
 
 import numpy as np
 import pytest
 
 from crazybilliards.comparison import compare, smooth
 from crazybilliards.comparison.distances import deviations
-from crazybilliards.comparison.side_by_side import grid
 from crazybilliards.comparison.side_by_side.grid import ELASTIC
 from crazybilliards.comparison.side_by_side.grid_figures import draw_density, draw_displacement
 from crazybilliards.comparison.stationary_theories import TITLES
@@ -149,12 +147,6 @@ def test_a_signal_keeps_what_was_computed(monkeypatch, tmp_path):
     whole = compare(Chain(size=5), {"amplitude": [1, 2]}, **how)
     assert whole.attrs["status"] == "completed"
     assert whole["amplitude_1/simulation"].identical(cut["amplitude_1/simulation"])
-
-
-def test_ctrl_c_before_anything_is_computed_is_ctrl_c(monkeypatch):
-    monkeypatch.setattr(grid, "run_cases", Mock(side_effect=KeyboardInterrupt))
-    with pytest.raises(KeyboardInterrupt):
-        compare(Chain(size=5), {"amplitude": [1]}, duration=500, progress=False)
 
 
 def test_pictures_show_simulation_and_exact_solution_and_the_differences_of_all_theories(tree):

@@ -46,6 +46,7 @@ def test_a_chain_that_diverges_ends_with_status_1(run, tmp_path):
     assert done.returncode == 1
     assert "diverged at t = " in done.stdout
     assert "the chain diverged after t = " in done.stderr
+    assert done.stderr.count("diverged") == 1
     result = load(tmp_path / "simulation-diverged.nc")
     assert (result.attrs["status"], chain_of(result).size) == ("diverged", 50)
 
