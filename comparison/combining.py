@@ -87,18 +87,18 @@ def _common(several: Sequence[dict[str, Any]]) -> dict[str, Any]:
 
 def _check(runs: Sequence[xr.Dataset]) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     """Return what is known of the runs and of one without others before it; ValueErrors."""
-    first = runs[0]
-    if any(isinstance(run, xr.Dataset) and "seed" in run.dims for run in runs):
-        raise ValueError("runs must each be one result: combine every sweep first, then these")
-    if not any(_names(run) for run in runs):
-        raise ValueError("runs must have variables with error bars: nothing was measured in these")
-    provenances: list[dict[str, Any]] = []
+    first, provenances = runs[0], list[dict[str, Any]]()
     for number, run in enumerate(runs):
         require(run, _names(first) if number else (), f"runs[{number}]")
         require(first, _names(run) if number else (), "runs[0]")
+        if "seed" in run.dims:
+            raise ValueError("runs must each be one result: combine every sweep first, then these")
         chain, provenance = chain_of(run), json.loads(run.attrs["provenance"])
         if run.attrs.get("source") != "simulation" or "snapshots" not in provenance:
             raise ValueError(f"combine {_NO_RUN}")
+        if not _names(run):
+            wanted = "variables with error bars: nothing was measured in these"
+            raise ValueError(f"runs must have {wanted}")
         if "smoothed" in run.attrs:
             raise ValueError("combine takes runs before their densities are smoothed")
         if chain != chain_of(first):
@@ -113,12 +113,12 @@ def _check(runs: Sequence[xr.Dataset]) -> tuple[list[dict[str, Any]], dict[str, 
     ends = {end for each in provenances for end in each["ended"]}
     # A run that goes on from another one of them has no warm-up of its own.
     origin = min(provenances, key=lambda each: each.get("start") in ends)
-    wanted = _decisive(origin)
+    decisive = _decisive(origin)
     for each in provenances:
         free = ("start", "warm-up") if each.get("start") in ends else ()
         for name, value in _decisive(each).items():
-            if value != wanted[name] and name not in free:
-                of = f"{shown(wanted[name])} and {shown(value)}"
+            if value != decisive[name] and name not in free:
+                of = f"{shown(decisive[name])} and {shown(value)}"
                 raise ValueError(f"runs must differ in the seed only, not in {name}: got {of}")
     return provenances, origin
 

@@ -14,6 +14,7 @@ kept in hat weights: the covered fraction of a node's bin is the mean of the n h
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -139,13 +140,9 @@ def _hat_density_of_states(chain: Chain, source: xr.Dataset) -> xr.Dataset:
     if deposit(positions.ravel(), x[0], x[1] - x[0], weights):
         raise ValueError("the states hold positions that are not finite")
     density = weights / (x[1] - x[0]) / (positions.size / observed.size)
-    return result(
-        chain,
-        {"density": ("x", density), "rods": ((), observed.size)},
-        source=source.attrs["source"],
-        method={"density": "of states"},
-        coordinates={"x": x},
-    )
+    variables: Any = {"density": ("x", density), "rods": ((), observed.size)}
+    how: Any = {"source": source.attrs["source"], "method": {"density": "of states"}}
+    return result(chain, variables, coordinates={"x": x}, **how)
 
 
 def _hat_density_of_theory(source: xr.Dataset) -> xr.Dataset:

@@ -114,13 +114,11 @@ def deviations(group: xr.DataTree) -> dict[str, Deviations]:
         require(run, (), "not compared with theories")
         return {}
     smoothed = smooth(run)
-    return {
-        name: Deviations(
-            deviation(smoothed, smooth(theory)),
-            width_deviation(run, theory) if "velocity_width" in theory else None,
-        )
-        for name, theory in results.items()
-    }
+    found = {}
+    for name, theory in results.items():
+        width = width_deviation(run, theory) if "velocity_width" in theory else None
+        found[name] = Deviations(deviation(smoothed, smooth(theory)), width)
+    return found
 
 
 def _differences(
@@ -144,15 +142,15 @@ def _differences(
         for dataset in (result, reference)
     )
     a, b = xr.align(ours.density, theirs.density, join="outer", fill_value=0.0)
-    squares = [each.density_error**2 for each in (ours, theirs) if "density_error" in each]
     squared_error = np.zeros(a.shape)
-    for each in squares:
-        squared_error += each.reindex_like(a, fill_value=0.0).values
+    for each in (ours, theirs):
+        error = each.get("density_error", xr.zeros_like(a))
+        squared_error += (error**2).reindex_like(a, fill_value=0.0).values
     high = [(density > floor * unit).values for density in (a, b)]
     reliable = squared_error <= np.square(_RELIABLE * np.maximum(a.values, b.values))
     known = high[0] & high[1] & (squared_error > 0) & reliable
-    error = np.where(known, np.sqrt(squared_error), np.inf) / unit
-    return (a - b).values / unit, error, high[0] | high[1]
+    errors = np.where(known, np.sqrt(squared_error), np.inf) / unit
+    return (a - b).values / unit, errors, high[0] | high[1]
 
 
 def _common_spacing(result: xr.Dataset, reference: xr.Dataset) -> float:

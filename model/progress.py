@@ -19,7 +19,7 @@ def progress_bar(
     progress: bool | str, items: Iterable[Any] | None = None, **look: Any
 ) -> std.tqdm[Any]:
     """Return tqdm's bar if ``progress``; where standard error is no terminal it writes lines."""
-    # A program in the background may have closed standard error, and tqdm cannot write to None.
+    # A program in the background may have closed standard error, where tqdm cannot write.
     if not progress or sys.stderr is None:
         return tqdm(items, disable=True, **look)
     return (tqdm if getattr(sys.stderr, "isatty", bool)() else _Lines)(items, **look)

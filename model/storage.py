@@ -84,7 +84,11 @@ def _load(file: Path, whole: bool = True) -> xr.Dataset | xr.DataTree:
     content = read_sealed(file)
     try:
         if content.startswith(_CLASSIC):
-            return _load_classic(content)
+            with xr.open_dataset(io.BytesIO(content), engine="scipy") as old:
+                old.load()
+            # Classic NetCDF has no integers beyond 32 bits, which get their 64 back.
+            narrow = [name for name, each in old.variables.items() if each.dtype == np.int32]
+            return old.assign({name: old.variables[name].astype(np.int64) for name in narrow})
         attributes = _attributes(content)  # refuses what names other files
         if not whole:
             return xr.Dataset(attrs=attributes)
@@ -123,14 +127,6 @@ def netcdf(result: xr.Dataset | xr.DataTree) -> bytes:
     # A worker of a dask cluster would ask the scheduler for a lock, which knows none of bytes.
     with dask.config.set(scheduler="threads") if dask else nullcontext():
         return bytes(result.to_netcdf(engine="h5netcdf"))
-
-
-def _load_classic(content: bytes) -> xr.Dataset:
-    """Return a result; classic NetCDF has no integers beyond 32 bits, which get their 64 back."""
-    with xr.open_dataset(io.BytesIO(content), engine="scipy") as file:
-        result = file.load()
-    narrow = [name for name, values in result.variables.items() if values.dtype == np.int32]
-    return result.assign({name: result.variables[name].astype(np.int64) for name in narrow})
 
 
 def write_sealed(path: Path, content: bytes) -> None:

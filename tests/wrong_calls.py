@@ -94,6 +94,7 @@ cb.combine([run, second.drop_vars("density")]) | no 'density'
 cb.combine([exact, run]) | takes results of simulate
 cb.combine([cb.smooth(run), cb.smooth(second)]) | before their densities are smoothed
 cb.combine([run, 3]) | not a crazybilliards result: 3
+cb.combine([3, run]) | not a crazybilliards result: 3
 cb.combine(run) | runs must be a list of results, ... got a Dataset
 cb.combine([]) | runs must be a list
 cb.combine(3) | runs must be a list

@@ -98,8 +98,7 @@ def relaxation_film(tree: xr.DataTree, most: int) -> tuple[Figure, Callable[[int
     ax.plot(rods.x, rods.density[0], color="black", linewidth=1, label=SIMULATION, zorder=3)
     fluids = {name: each.isel(time=0) for name, each in densities.items() if name != SIMULATION}
     overlay(fluids, ax=ax)
-    high = max(float(each.density.max()) for each in densities.values())
-    ax.set_ylim(0, 1.05 * high)
+    ax.set_ylim(0, 1.05 * max(float(each.density.max()) for each in densities.values()))
     ax.margins(x=0)
     chain = chain_of(rods)
     _draw_walls(ax, chain)

@@ -9,7 +9,6 @@ import os
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from pathlib import Path
 from typing import Any
 
 import pandas as pd
@@ -134,7 +133,12 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     paths = sorted(place.glob("[!.]*.nc"))  # hidden files are no results
     if not paths:
         raise ValueError(f"{folder}: holds no case of a sweep")
-    results = [_read_case(path) for path in paths]
+    results = []
+    for path in paths:
+        result = load(path)
+        if not stored_parameters(result.attrs) or isinstance(result, xr.DataTree):
+            raise ValueError(f"{path}: not a case of a sweep")
+        results.append(result.assign_attrs(file=path.name))
     points = [stored_parameters(result.attrs) for result in results]
     if len({point["job"] for point in points}) > 1:
         raise ValueError(f"{folder}: holds cases of different jobs")
@@ -161,13 +165,6 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
     require(joined, (), str(folder))
     fixed = {name: value for name, value in points[0].items() if name not in names}
     return joined.assign_attrs(parameters=json.dumps(fixed, sort_keys=True))
-
-
-def _read_case(path: Path) -> xr.Dataset:
-    result = load(path)
-    if not stored_parameters(result.attrs) or isinstance(result, xr.DataTree):
-        raise ValueError(f"{path}: not a case of a sweep")
-    return result.assign_attrs(file=path.name)
 
 
 def _varied(points: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
