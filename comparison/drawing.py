@@ -160,9 +160,7 @@ def _look(number: int) -> dict[str, Any]:
 def mark_clipped(ax: Axes) -> None:
     """Put a triangle on the frame above or below every symbol that lies beyond it."""
     low, high = ax.get_ylim()
-    for container in ax.containers:
-        if not isinstance(container, ErrorbarContainer):
-            continue
+    for container in [each for each in ax.containers if isinstance(each, ErrorbarContainer)]:
         symbols = container.lines[0]
         x, y = (np.asarray(values, dtype=float) for values in symbols.get_data())
         look: Any = {"color": symbols.get_color(), "clip_on": False, "zorder": 4}

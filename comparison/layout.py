@@ -1,8 +1,7 @@
 """How pictures are laid out: in one style, one or two columns of a journal wide, panels lettered.
 
 ``plt.style.use("crazybilliards.comparison.figures")`` gives other pictures the same style. Figures
-are made without pyplot, and without the settings of the reader. So no picture that is written to a
-file depends on his backend or his matplotlibrc.
+that are written to files are made without pyplot, and without the settings of the reader.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ THEORIES = {
         StationaryTheory("gas", steady_state, check_steady_state),
     )
 }
-# What pictures call a result. Its name everywhere else is that of the function that computes it.
+# What pictures call a result.
 TITLES = {
     "simulation": "simulation",
     **{name: theory.title for name, theory in THEORIES.items()},

@@ -1,7 +1,7 @@
 """Pictures of chains side by side: densities, displacements and widths.
 
-The panels of densities and displacements have the differences from the exact equilibrium below
-them, which are too small to be seen above; at e != 1 those from the simulation.
+Densities and displacements have the differences from the exact equilibrium, at e != 1 from the
+simulation, below them, which are too small to be seen above.
 """
 
 from __future__ import annotations
@@ -188,11 +188,10 @@ def draw_profile(theory: xr.Dataset, name: str) -> Figure:
     for ax, quantity in zip(axes, ("velocity_width", "mean_displacement"), strict=True):
         _draw_theory(ax, theory, quantity, color=COLOURS[0], label=name)
         ax.set_ylabel(axis_label(theory[quantity]))
-    chain = chain_of(theory)
-    widths = {math.sqrt(chain.temperature / mass) for mass in chain.rod_masses[:2]}
-    for number, width in enumerate(sorted(widths)):
-        label = None if number else "free rod (and e = 1)"
+    chain, label = chain_of(theory), "free rod (and e = 1)"
+    for width in sorted({math.sqrt(chain.temperature / mass) for mass in chain.rod_masses[:2]}):
         axes[0].axhline(width, color="0.4", linestyle=":", label=label)
+        label = ""  # of the other mass
     _finish_rods(axes)
     axes[0].legend()
     return figure

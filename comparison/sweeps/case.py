@@ -51,8 +51,7 @@ class Case:
     Parameters
     ----------
     job
-        ``"simulate"``, or the name of a theory in
-        :mod:`crazybilliards.comparison.stationary_theories`.
+        ``"simulate"``, or the name of a theory, ``"steady_state"`` for example.
     chain
         The chain.
     settings
@@ -155,10 +154,8 @@ def compute(case: Case, source: str, threads: int = 1) -> bytes:
     if source != case.source:
         raise ValueError("the worker runs other source code of crazybilliards")
     how = dict(case.settings)
-    if "seed" in how:
-        how["seed"] = int(case._digest[20:35], 16)
-    if case.job not in THEORIES:
-        how |= {"threads": threads, "progress": False}
+    if case.job == "simulate":
+        how |= {"seed": int(case._digest[20:35], 16), "threads": threads, "progress": False}
     # Linear algebra in threads sums in another order, and it would make other workers wait.
     with threadpool_limits(1), warnings.catch_warnings():
         # Said by the result, of the whole sweep, and by the status.

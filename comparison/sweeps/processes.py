@@ -38,10 +38,9 @@ def process_pool(processes: int | None = None) -> Iterator[Executor]:
 
 
 class _Processes(ThreadPoolExecutor):
-    """Threads with a process each.
+    """Threads with a process each, a pool of its own.
 
-    Each process is a pool of its own. A pool of several, of loky as of the standard library, gives
-    up the work of all of them when one dies, and does not tell which one it was.
+    A pool of several gives up the work of all of them when one dies, and does not tell which.
     """
 
     def __init__(self, number: int) -> None:
