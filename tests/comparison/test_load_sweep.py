@@ -136,8 +136,6 @@ def test_loading_gives_one_dataset_over_the_grid(swept, tmp_path):
 
 def test_numbers_about_a_case_are_variables_over_the_grid(swept, tmp_path):
     *_, grid = swept
-    assert np.isfinite(grid.time_step_error.sel(restitution=0.5)).all()
-    assert (grid.time_step_error.sel(restitution=1.0)[:1] == 0).all()  # exact there
     assert grid.time_step_error.attrs["units"] == "1"
     assert grid.end_time.attrs == {"long_name": "time reached, warm-up included", "units": "t_0"}
     assert not {"status", "end_time", "case"} & grid.attrs.keys()

@@ -78,16 +78,6 @@ def test_a_worker_with_other_source_code_refuses():
 # -- running ----------------------------------------------------------------------------------
 
 
-def test_cases_have_random_numbers_of_their_own(tmp_path):
-    cases = [
-        Case("simulate", Chain(size=2, gap=gap), {"duration": 100, "observe": ["snapshots"]})
-        for gap in (0.0, 1e3, 2e3)  # the last two never meet: equal noise would show
-    ]
-    assert run_cases(cases, tmp_path, **QUIET) == {}
-    v = [case.load(tmp_path).velocity.values for case in cases]
-    assert abs(np.corrcoef(v[1].ravel(), v[2].ravel())[0, 1]) < 0.3
-
-
 def test_nothing_is_computed_twice_and_a_damaged_file_is_computed_anew(tmp_path):
     cases = sweep().cases()
     run_cases([*cases, *cases], tmp_path, **QUIET)

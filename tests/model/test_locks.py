@@ -3,7 +3,6 @@
 import signal
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -37,12 +36,6 @@ def test_a_lock_is_held_until_its_process_ends_however_it_ends(name, tmp_path):
     with locked(path):
         pass
     assert list(tmp_path.rglob("*.lock")) == []
-
-
-def test_another_thread_is_refused_as_well(tmp_path):
-    with locked(tmp_path), ThreadPoolExecutor(1) as thread:
-        refused = thread.submit(locked(tmp_path).__enter__).exception()
-    assert isinstance(refused, BlockingIOError)
 
 
 CONTENDER = """
