@@ -51,7 +51,7 @@ def draw_density(tree: xr.DataTree) -> Figure:
     for whole, end, rough in pairs:
         results = {name: smooth(result) for name, result in rough.items()}
         chain = chain_of(results[SIMULATION])
-        density = results[_reference(results)].density
+        density = results.get(_EXACT, results[SIMULATION]).density
         inside = density.x.values[density > _LEAST_DRAWN * chain.close_packed_density]
         length = max(3 * chain.thermal_length if chain.stiffness else 0.0, 10 * chain.radius)
         _draw_best(whole, results, "density")
@@ -103,11 +103,6 @@ def _finish_pairs(figure: Figure, difference: str) -> None:
     legend_above(figure, above, below)
 
 
-def _reference(results: dict[str, xr.Dataset]) -> str:
-    """Return the title of the result from which the others differ."""
-    return _EXACT if _EXACT in results else SIMULATION
-
-
 def _draw_best(ax: Axes, results: dict[str, xr.Dataset], quantity: str) -> None:
     """Draw the simulation and the exact equilibrium or the gas, of which a comparison has one."""
     titles = [TITLES[name] for name in (*_BEST, SIMULATION)]
@@ -118,8 +113,8 @@ def _draw_best(ax: Axes, results: dict[str, xr.Dataset], quantity: str) -> None:
 
 
 def _draw_differences(ax: Axes, results: dict[str, xr.Dataset], quantity: str, unit: float) -> None:
-    """Draw the differences from the reference in per cent of ``unit``."""
-    reference = results[_reference(results)][quantity]
+    """Draw the differences from the equilibrium, or the simulation, in per cent of ``unit``."""
+    reference = results.get(_EXACT, results[SIMULATION])[quantity]
     differences = {}
     for name, result in results.items():
         difference = 100 / unit * (result[quantity] - reference)
