@@ -5,20 +5,22 @@ The paper's parameters throughout: gamma = k = A = 1, g = 0 unless said.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from typing import Any, TypeVar
 
 import xarray as xr
 
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.claims.study import Effort, Results, Runs, Solution, effort
+from crazybilliards.reproduction.claims.verdicts import Estimate, at_choices
 
 LARGE = 1000  # the paper's longest chains
 SIZES = (10, 30, 100, 300, LARGE)
 RESTITUTIONS = (0.0, 0.5, 0.75, 0.85, 0.92, 0.95)
 
 # The time steps at which the perfectly inelastic chain runs, by their names. None: the default one.
-STEPS = {"default step": None, "dt = 0.01": 1e-2, "dt = 0.003": 3e-3, "dt = 0.001": 1e-3}
+DEFAULT = "default step"
+STEPS = {DEFAULT: None, "dt = 0.01": 1e-2, "dt = 0.003": 3e-3, "dt = 0.001": 1e-3}
 # That at which the others run too, to see whether the step decides a claim.
 OTHER_STEP, OTHER = 1e-2, "dt = 0.01"
 
@@ -57,6 +59,7 @@ _MOST_FLIPPERS = (100, 4.0)
 _FLIPPERS_LONG = effort((4, 1000), (32, 8000))
 _FLIPPERS_AGAIN = effort((4, 300), (4, 1500))
 
+Quantity = Callable[[xr.Dataset], float]
 Key = TypeVar("Key", bound=Hashable)
 Need = TypeVar("Need", Runs, Solution)
 
@@ -111,18 +114,36 @@ ELASTIC = Runs(
 
 
 def at_both_steps(runs: Mapping[Key, Runs]) -> dict[str, dict[Key, Runs]]:
-    """Return the runs, and those of the same chains at the other step, by the names of the steps.
+    """Return the runs, of 1000 rods or of flippers, and such at the other step, by the steps."""
 
-    The chains are of 1000 rods, or of flippers.
-    """
-    others = {key: _at_other_step(one) for key, one in runs.items()}
-    return {"default step": dict(runs), OTHER: others}
+    def again(one: Runs) -> Runs:
+        if one.chain == Chain(size=LARGE, restitution=0.0):
+            return inelastic(LARGE, OTHER_STEP)
+        return one.at_step(OTHER_STEP, _FLIPPERS_AGAIN if one.chain.restitution > 1 else _AGAIN)
+
+    return {DEFAULT: dict(runs), OTHER: {key: again(one) for key, one in runs.items()}}
 
 
-def _at_other_step(runs: Runs) -> Runs:
-    if runs.chain == Chain(size=LARGE, restitution=0.0):
-        return inelastic(LARGE, OTHER_STEP)
-    return runs.at_step(OTHER_STEP, _FLIPPERS_AGAIN if runs.chain.restitution > 1 else _AGAIN)
+def at_steps(
+    results: Results, steps: Mapping[str, Mapping[Key, Runs]], key: Key, quantity: Quantity
+) -> dict[str, Any]:
+    """Return what a claim takes of a quantity of some runs, by their time step."""
+    return at_choices(steps, lambda group: group[key].estimate(results, quantity))
+
+
+def difference(
+    results: Results,
+    steps: Mapping[str, Mapping[Key, Runs]],
+    keys: tuple[Key, Key],
+    quantity: Quantity,
+) -> tuple[Estimate, Estimate, dict[str, Any]]:
+    """Return a quantity of two runs, and what a claim takes of the first less the second."""
+
+    def both(group: Mapping[Key, Runs]) -> list[Estimate]:
+        return [group[key].estimate(results, quantity) for key in keys]
+
+    first, second = both(steps[DEFAULT])
+    return first, second, at_choices(steps, lambda group: Estimate.minus(*both(group)))
 
 
 def all_of(groups: Mapping[Any, Mapping[Any, Need]]) -> list[Need]:
@@ -134,8 +155,8 @@ def gas(
     size: int, restitution: float, damping: float = 1.0, *, correlations: bool = True
 ) -> Solution:
     """Return the steady state of the gas; without correlations its mean field."""
-    chain = Chain(size=size, restitution=restitution, damping=damping)
     name = f"gas L={size} e={restitution:g} gamma={damping:g} correlations={correlations}"
+    chain = Chain(size=size, restitution=restitution, damping=damping)
     return Solution(name, chain, {"correlations": correlations})
 
 

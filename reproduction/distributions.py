@@ -54,11 +54,7 @@ def gaussian(v: Array, width: float) -> Array:
 
 
 def draw_distributions(ax: Axes, runs: Sequence[xr.Dataset], particles: Sequence[int]) -> None:
-    """Draw p(v) of some particles on a logarithmic scale, v in free widths W, and Gaussians.
-
-    Error bars are standard errors from the scatter between the independent ``runs``. The lines are
-    Gaussians of the same width, and the free rod's.
-    """
+    """Draw p(v) of some particles, v in free widths W, and Gaussians of the same width."""
     unit = chain_of(runs[0]).free_velocity_width
     v = runs[0].velocity_bin.values / unit
     reach = 0.0

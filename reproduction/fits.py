@@ -13,8 +13,6 @@ from crazybilliards.comparison.fits.fit import Fit, check_points, least_squares,
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_integer, check_real
 
-_OVERFLOW = 700.0  # of exp
-
 
 def fit_singularity(time: ArrayLike, energy: ArrayLike) -> Fit:
     """Fit E(t) = C (t_c - t)^-a to an energy that grows towards a divergence after the last time.
@@ -37,19 +35,13 @@ def fit_singularity(time: ArrayLike, energy: ArrayLike) -> Fit:
     )
     intercept, exponent, q = map(float, values)
     log_scale = intercept + exponent * float(np.log(span))
-    if not (-50 < q < 5 and exponent > 0 and abs(log_scale) < _OVERFLOW):
+    if not (-50 < q < 5 and exponent > 0 and abs(log_scale) < 700):  # exp overflows beyond
         raise ValueError("no finite-time singularity fits: its time runs away")
-    errors = np.sqrt(np.diag(covariance))
-    return Fit(
-        {
-            "scale": float(np.exp(log_scale)),
-            "time": last + span * float(np.exp(q)),
-            "exponent": exponent,
-        },
-        {"time": span * float(np.exp(q) * errors[2]), "exponent": float(errors[1])},
-        _singularity,
-        quality,
-    )
+    scale, left = float(np.exp(log_scale)), float(np.exp(q))
+    _, exponent_error, q_error = map(float, np.sqrt(np.diag(covariance)))
+    parameters = {"scale": scale, "time": last + span * left, "exponent": exponent}
+    errors = {"time": span * (left * q_error), "exponent": exponent_error}
+    return Fit(parameters, errors, _singularity, quality)
 
 
 def _singularity(t: Array, scale: float, time: float, exponent: float) -> Array:
@@ -100,12 +92,8 @@ def fit_scaling(x: ArrayLike, y: ArrayLike, error: ArrayLike) -> Fit:
         "power law", line, (np.log(x), np.log(y)), (0.0, 0.0), error / y
     )
     scale, errors = float(np.exp(intercept)), np.sqrt(np.diag(covariance))
-    return Fit(
-        {"scale": scale, "exponent": float(slope)},
-        {"scale": scale * float(errors[0]), "exponent": float(errors[1])},
-        _power_law,
-        quality,
-    )
+    of_errors = {"scale": scale * float(errors[0]), "exponent": float(errors[1])}
+    return Fit({"scale": scale, "exponent": float(slope)}, of_errors, _power_law, quality)
 
 
 def _power_law(x: Array, scale: float, exponent: float) -> Array:
@@ -123,8 +111,8 @@ def fit_exponential(restitution: ArrayLike, y: ArrayLike, error: ArrayLike) -> F
         raise ValueError("an exponential with offset needs at least three points")
     if error.min() <= 0:
         raise ValueError("an exponential with offset needs positive errors")
-    lowest, highest = float(y[e.argmin()]), float(y[e.argmax()])
-    start = (highest - lowest, 5.0, lowest)
+    lowest = float(y[e.argmin()])
+    start = (float(y[e.argmax()]) - lowest, 5.0, lowest)
     values, covariance, quality = least_squares("exponential", _saturating, (e, y), start, error)
     names = ("amplitude", "rate", "offset")
     parameters, errors = (
@@ -159,26 +147,15 @@ def fit_avalanches(count: ArrayLike, *, smallest: int = 1, largest: int | None =
         )
     total, logs = float(counts.sum()), np.log(sizes)
     mean = float(counts @ logs) / total
-
-    def cost(exponent: float) -> float:
-        return exponent * mean + float(np.log(np.sum(sizes**-exponent)))
-
-    exponent = float(minimize_scalar(cost, bracket=(1.0, 3.0)).x)
-    curve = partial(_probability, sizes=sizes)
+    least = minimize_scalar(lambda a: a * mean + np.log(np.sum(sizes**-a)), bracket=(1.0, 3.0))
+    exponent, curve = float(least.x), partial(_probability, sizes=sizes)
     p = curve(sizes, exponent)
     # Fisher's information of one avalanche is the variance of ln N.
     information = float(p @ logs**2 - (p @ logs) ** 2)
-    return Fit(
-        {"exponent": exponent},
-        {"exponent": 1 / float(np.sqrt(total * information))},
-        curve,
-        {
-            "smallest": smallest,
-            "largest": int(sizes[-1]),
-            "count": int(total),
-            "distance": float(np.abs(np.cumsum(counts) / total - np.cumsum(p)).max()),
-        },
-    )
+    distance = float(np.abs(np.cumsum(counts) / total - np.cumsum(p)).max())
+    quality = {"smallest": smallest, "largest": int(sizes[-1]), "count": int(total)}
+    errors = {"exponent": 1 / float(np.sqrt(total * information))}
+    return Fit({"exponent": exponent}, errors, curve, quality | {"distance": distance})
 
 
 def _probability(size: Array, exponent: float, *, sizes: Array) -> Array:
@@ -199,11 +176,11 @@ def tail_length(velocity: ArrayLike, density: ArrayLike, beyond: float) -> float
         raise ValueError("velocity must ascend, over at least two bins")
     between = (v[1:] + v[:-1]) / 2
     edges = np.concatenate([[2 * v[0] - between[0]], between, [2 * v[-1] - between[-1]]])
-    right = _beyond(edges, p, beyond)
-    left = _beyond(-edges[::-1], p[::-1], beyond)
-    if not right[0] + left[0] > 0:
+    sides = _beyond(edges, p, beyond), _beyond(-edges[::-1], p[::-1], beyond)
+    share, integral = map(sum, zip(*sides, strict=True))
+    if not share > 0:
         raise ValueError(f"no velocities beyond {beyond:g}")
-    return (right[1] + left[1]) / (right[0] + left[0])
+    return integral / share
 
 
 def _beyond(edges: Array, density: Array, start: float) -> tuple[float, float]:

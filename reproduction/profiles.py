@@ -23,9 +23,8 @@ _CLOSE = 0.25
 def mirrored(run: xr.Dataset) -> xr.Dataset:
     """Return the result with both widths and <dx> averaged over mirror images, with their errors.
 
-    Both ends of a chain have the same averages, apart from the sign of displacements. The mean of
-    two independent rods has half the variance of one. Rods near the centre move with their mirror
-    image: their errors become no smaller.
+    The mean of two independent rods has half the variance of one. Rods near the centre move with
+    their mirror image: their errors become no smaller.
     """
     size = run.sizes["particle"]
     apart = np.abs(2 * run.particle.values - (size + 1)) > _CLOSE * size
@@ -60,15 +59,13 @@ def fits_in_plot(of_what: str, runs: Iterable[xr.Dataset]) -> dict[str, Any]:
     free = np.log(chain_of(runs[0]).free_velocity_width)
     lowest = np.log(min(float(run.velocity_width.min()) for run in runs))
     longest = np.log(max(run.sizes["particle"] for run in runs))
+    ranges = {"x_range": (0.0, longest), "y_range": (lowest, free)}
     distances, errors, vertical = [], [], 0.0
     for run in runs:
-        fit = fit_border_power_law(run)
-        i, width = run.particle.values, run.velocity_width.values
-        error = run.velocity_width_error.values
+        fit, i = fit_border_power_law(run), run.particle.values
+        width, error = run.velocity_width.values, run.velocity_width_error.values
         fine = np.geomspace(1, i[-1], 2000)
-        symbols, line = (np.log(i), np.log(width)), (np.log(fine), np.log(fit(fine)))
-        ranges = {"x_range": (0.0, longest), "y_range": (lowest, free)}
-        distances.append(distances_in_plot(*symbols, *line, **ranges))
+        distances.append(distances_in_plot(*map(np.log, (i, width, fine, fit(fine))), **ranges))
         errors.append(error / width / (free - lowest))
         vertical = max(vertical, float(np.abs((fit(i) - width) / error).max()))
     return in_plot(

@@ -6,7 +6,7 @@ import io
 import platform
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from html import escape
@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import get_args
 
 import xarray as xr
+from matplotlib.figure import Figure
 
 from crazybilliards.comparison.layout import house_style
 from crazybilliards.comparison.sweeps import Case
@@ -37,8 +38,8 @@ class Reproduction:
     """A study, drawn from its results, and what became of its claims."""
 
     study: Study
-    pictures: dict[str, bytes]  # the picture as a file, by format: PNG always, others as asked for
-    claims: list[Claim]  # checked
+    pictures: dict[str, bytes]  # files by their formats: PNG always, others as asked for
+    claims: list[Claim]
     parameters: list[str]  # what was computed, a line for each kind of case
 
 
@@ -48,7 +49,7 @@ def all_cases(studies: Iterable[Study], quality: Quality) -> list[Case]:
 
 
 def reproduce(
-    studies: Iterable[Study], quality: Quality, folder: Path, *, formats: Collection[str] = ()
+    studies: Iterable[Study], quality: Quality, folder: Path, *, formats: Sequence[str] = ()
 ) -> Iterator[Reproduction]:
     """Draw studies and check their claims, in their order, from the cases in ``folder``.
 
@@ -63,29 +64,20 @@ def reproduce(
         cases = study.cases(quality)
         results = {name: result(case) for name, case in cases.items()}
         with house_style():
-            pictures = _pictures(study, results, ("png", *formats))
-        claims = study.claims(results) if study.claims else []
-        yield Reproduction(study, pictures, claims, describe(cases.values()))
+            figure = study.draw(results)
+            pictures = {kind: _file(figure, kind) for kind in ("png", *formats)}
+        yield Reproduction(study, pictures, study.claims(results), describe(cases.values()))
 
 
-def _pictures(
-    study: Study, results: dict[str, xr.Dataset], formats: Iterable[str]
-) -> dict[str, bytes]:
-    figure = study.draw(results)
-    pictures = {}
-    for kind in formats:
-        picture = io.BytesIO()
-        # The same picture is to give the same file, whenever it is drawn.
-        figure.savefig(picture, format=kind, metadata=_NO_DATE.get(kind))
-        pictures[kind] = picture.getvalue()
-    return pictures
+def _file(figure: Figure, kind: str) -> bytes:
+    """Return a picture as a file, which is the same whenever it is drawn."""
+    content = io.BytesIO()
+    figure.savefig(content, format=kind, metadata=_NO_DATE.get(kind))
+    return content.getvalue()
 
 
 def describe(cases: Iterable[Case]) -> list[str]:
-    """Say in a line for each kind of case what is not the default, and how many runs there are.
-
-    Runs that differ in their random numbers or in what is observed only are of one kind.
-    """
+    """Say in a line for each kind of case what is not the default, and how many runs there are."""
     return [
         f"{line} ({number} runs)" if number > 1 else line
         for line, number in Counter(case.title for case in cases).items()
@@ -93,17 +85,16 @@ def describe(cases: Iterable[Case]) -> list[str]:
 
 
 def markdown(reproductions: Sequence[Reproduction], quality: Quality) -> str:
-    """Return a page of Markdown, to lie beside the pictures: a part for each study.
+    """Return a page of Markdown, to lie beside the pictures: verdicts, then a part for each study.
 
-    It begins with a table that counts the verdicts of each study and leads to its part. The parts
-    are in lists and not in tables, so that a narrow screen shows all of a claim.
+    The parts are in lists and not in tables, so that a narrow screen shows all of a claim.
     """
-    versions = {"python": platform.python_version()} | {name: version(name) for name in _VERSIONS}
+    versions = ", ".join(f"{name} {version(name)}" for name in _VERSIONS)
     rows = [
         "# What is claimed, and what was found",
         "",
         f"Quality: {quality}. Written by `crazybilliards reproduce`; "
-        f"{', '.join(f'{name} {number}' for name, number in versions.items())}.",
+        f"python {platform.python_version()}, {versions}.",
         "",
         _INTRODUCTION,
         "",
@@ -112,24 +103,19 @@ def markdown(reproductions: Sequence[Reproduction], quality: Quality) -> str:
         "| figure | verdicts |",
         "|---|---|",
     ]
-    for reproduction in reproductions:
-        heading = reproduction.study.heading
-        rows.append(f"| [{heading}](#{_anchor(heading)}) | {_counts(reproduction.claims)} |")
+    parts: list[str] = []
     for reproduction in reproductions:
         study = reproduction.study
-        rows += ["", f"## {study.heading}", ""]
-        rows += [f"![{study.title}]({study.stem}.png)", "", study.caption]
+        heading = f"{study.number}. {study.title}"
+        anchor = re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")  # as Markdown names it
+        rows.append(f"| [{heading}](#{anchor}) | {_counts(reproduction.claims)} |")
+        parts += ["", f"## {heading}", "", f"![{study.title}]({study.stem}.png)", "", study.caption]
         if reproduction.parameters:
-            rows += ["", f"Computed: {_plain('; '.join(reproduction.parameters))}."]
+            parts += ["", f"Computed: {_plain('; '.join(reproduction.parameters))}."]
         for claim in reproduction.claims:
-            rows += ["", f"**{_plain(claim.statement)}**", ""]
-            rows += [f"* {name}: {_plain(text)}" for name, text in claim.details.items()]
-    return "\n".join(rows) + "\n"
-
-
-def _anchor(heading: str) -> str:
-    """Return the name that Markdown gives to a heading, for links to it."""
-    return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
+            parts += ["", f"**{_plain(claim.statement)}**", ""]
+            parts += [f"* {name}: {_plain(text)}" for name, text in claim.details.items()]
+    return "\n".join([*rows, *parts, ""])
 
 
 def _counts(claims: Iterable[Claim]) -> str:

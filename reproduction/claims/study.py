@@ -1,9 +1,8 @@
 """A study, a figure of the paper computed anew: what it needs, its picture, its claims.
 
-It needs independent runs of chains, and theories of them. A number drawn from a whole profile, an
-exponent say, has no simple error bar: neighbouring rods move together. It is worked out for every
-run by itself, and the scatter between the runs is its error. Runs also share the work among
-processes.
+A number drawn from a whole profile, an exponent say, has no simple error bar: neighbouring rods
+move together. It is worked out for every independent run by itself, and the scatter between the
+runs is its error.
 """
 
 from __future__ import annotations
@@ -43,11 +42,7 @@ def effort(quick: tuple[float, ...], full: tuple[float, ...]) -> Effort:
 
 @dataclass(frozen=True)
 class Runs:
-    """Independent runs of one chain: their cases, and what their results give together.
-
-    They differ in their random numbers only. Methods that take ``results`` look for their own runs
-    among them.
-    """
+    """Runs of one chain that differ in their random numbers, and what they give together."""
 
     name: str  #: their cases go by NAME/0, NAME/1, ...
     chain: Chain
@@ -62,14 +57,13 @@ class Runs:
     def cases(self, quality: Quality) -> dict[str, Case]:
         """Return the cases ``NAME/0``, ``NAME/1``, ..."""
         number, own = self.effort[quality]
-        settings = {**own, **self.settings}
         return {
-            f"{self.name}/{seed}": Case("simulate", self.chain, {**settings, "seed": seed})
-            for seed in range(number)
+            f"{self.name}/{i}": Case("simulate", self.chain, {**own, **self.settings, "seed": i})
+            for i in range(number)
         }
 
     def members(self, results: Results) -> list[xr.Dataset]:
-        """Return their results, as many as there are."""
+        """Return those of the results that are theirs."""
         return [run for key, run in results.items() if key.rpartition("/")[0] == self.name]
 
     def mean(self, results: Results) -> xr.Dataset:
@@ -111,22 +105,17 @@ class Solution(NamedTuple):
 class Study:
     """A question put to simulations and theories, answered by a picture and by checked claims."""
 
-    number: int  #: of the figure in the paper, arXiv:1404.7460, that it computes anew
+    number: int  #: of the figure in the paper, arXiv:1404.7460
     name: str  #: short, for the command line and for files
     title: str  #: one line
     caption: str  #: what a reader needs to understand the picture
     needs: Sequence[Runs | Solution] = ()  #: the simulations and theories
     draw: Callable[[Results], Figure]  #: the picture, from the results of all cases by their names
-    claims: Callable[[Results], list[Claim]] | None = None  #: beside what was found
+    claims: Callable[[Results], list[Claim]] = lambda results: []  #: beside what was found
 
     def cases(self, quality: Quality) -> dict[str, Case]:
         """Return the cases of all that it needs, by their names."""
         return {name: case for need in self.needs for name, case in need.cases(quality).items()}
-
-    @property
-    def heading(self) -> str:
-        """The heading of its part of the page."""
-        return f"{self.number}. {self.title}"
 
     @property
     def stem(self) -> str:

@@ -27,6 +27,7 @@ Choice = TypeVar("Choice")
 EYE = 0.02
 POSITIVE = (0.0, math.inf)
 _SIGNIFICANT = 3.0
+_OUTCOMES: dict[bool | None, Verdict] = {True: "reproduced", False: "not reproduced"}
 
 
 class Estimate(NamedTuple):
@@ -42,12 +43,9 @@ class Estimate(NamedTuple):
         digits = max(0, 1 - math.floor(math.log10(self.error))) if self.error > 0 else 4
         return f"{self.value:.{digits}f} ± {self.error:.{digits}f}"
 
-    def __neg__(self) -> Estimate:
-        return Estimate(-self.value, self.error)
-
     def times(self, factor: float) -> Estimate:
-        """Return it in another unit."""
-        return Estimate(self.value * factor, self.error * factor)
+        """Return it in another unit, or with the other sign."""
+        return Estimate(self.value * factor, self.error * abs(factor))
 
     def minus(self, other: Estimate) -> Estimate:
         """Return the difference to an independent one."""
@@ -55,13 +53,11 @@ class Estimate(NamedTuple):
 
     def lies(self, within: Interval) -> bool | None:
         """Apply the rule: whether it lies inside; None if its error does not allow to say."""
-        low, high = within
         chance = _SIGNIFICANT * self.error
-        if low < self.value - chance and self.value + chance < high:
+        least, most = self.value - chance, self.value + chance
+        if within[0] < least and most < within[1]:
             return True
-        if self.value + chance < low or self.value - chance > high:
-            return False
-        return None
+        return False if most < within[0] or least > within[1] else None
 
 
 def around(value: float, limit: float) -> Interval:
@@ -89,16 +85,10 @@ class Claim:
     @property
     def verdict(self) -> Verdict:
         """That of its number, unless the number at another choice contradicts it."""
-        others = {number.lies(self.within) for number in self.elsewhere.values()}
-        if {True, False} <= {self.number.lies(self.within), *others}:
+        holds = self.number.lies(self.within)
+        if {True, False} <= {holds, *(at.lies(self.within) for at in self.elsewhere.values())}:
             return "cannot be decided"
-        return self._verdict_of(self.number)
-
-    def _verdict_of(self, number: Estimate) -> Verdict:
-        holds = number.lies(self.within)
-        if holds is None:
-            return "undecided"
-        return "reproduced" if holds else "not reproduced"
+        return _OUTCOMES.get(holds, "undecided")
 
     @property
     def details(self) -> dict[str, str]:
@@ -108,8 +98,8 @@ class Claim:
         limit = f" (limit {high:g})" if low == -high else ""
         others = []
         for choice, number in self.elsewhere.items():
-            verdict = self._verdict_of(number)  # nothing is said of one that decides nothing
-            others.append(f"{choice}: {number}" + f", {verdict}" * (verdict != "undecided"))
+            told = _OUTCOMES.get(number.lies(self.within))
+            others.append(f"{choice}: {number}" + (f", {told}" if told else ""))
         texts = {
             "verdict": self.verdict,
             "in the paper": self.source,
@@ -133,12 +123,12 @@ def at_choices(
     A choice is, for instance, the time step, by a name such as ``"dt = 0.01"``. ``measured`` gives
     a number, or what :func:`worst` and :func:`in_plot` return.
     """
-    keywords = {}
-    for name, choice in choices.items():
-        number = measured(choice)
-        keywords[name] = {"number": number} if isinstance(number, Estimate) else number
-    ours, *others = choices
-    return {**keywords[ours], "elsewhere": {name: keywords[name]["number"] for name in others}}
+    ours, *others = (
+        found if isinstance(found := measured(choice), dict) else {"number": found}
+        for choice in choices.values()
+    )
+    elsewhere = zip(list(choices)[1:], others, strict=True)
+    return ours | {"elsewhere": {name: other["number"] for name, other in elsewhere}}
 
 
 def worst(quantity: str, differences: Iterable[Estimate], limit: float) -> dict[str, Any]:
@@ -151,14 +141,13 @@ def worst(quantity: str, differences: Iterable[Estimate], limit: float) -> dict[
     measured = list(differences)
     chance = float(norm.isf(norm.sf(_SIGNIFICANT) / len(measured))) / _SIGNIFICANT
     within = around(0.0, limit)
-    enlarged = [Estimate(value, error * chance) for value, error in measured]
-    at = enlarged.index(_decisive(enlarged, within))
+    number = _decisive([Estimate(value, error * chance) for value, error in measured], within)
     largest = max((abs(value) / error for value, error in measured if error > 0), default=math.nan)
     words = (
-        f"{quantity}: {measured[at]}, the worst of {len(measured)} (limit {limit:g}); largest "
-        f"difference {largest:.1f} standard errors"
+        f"{quantity}: {Estimate(number.value, number.error / chance)}, the worst of "
+        f"{len(measured)} (limit {limit:g}); largest difference {largest:.1f} standard errors"
     )
-    return {"number": enlarged[at], "within": within, "words": words}
+    return {"number": number, "within": within, "words": words}
 
 
 def _decisive(numbers: Sequence[Estimate], within: Interval) -> Estimate:
@@ -171,7 +160,7 @@ def _decisive(numbers: Sequence[Estimate], within: Interval) -> Estimate:
 
 
 def furthest_in_plot(distances: Array, errors: Array) -> Estimate:
-    """Return the distance, as a share of the plotted range, that decides :func:`in_plot`."""
+    """Return the distance, a share of the plotted range, that decides :func:`in_plot`."""
     return _decisive(list(map(Estimate, distances.tolist(), errors.tolist())), around(0.0, EYE))
 
 

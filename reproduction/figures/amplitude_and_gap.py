@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
@@ -30,12 +29,12 @@ from crazybilliards.reproduction.profiles import mirrored
 # -- figure 18: the amplitude only sets the scale ---------------------------------------------
 
 _AMPLITUDES = (1.0, 3.0, 10.0)
+# Of the quantities over powers of A: how they are called, and their axes.
 _SCALED = {
-    "velocity_variance": "W_v^2/A^2",
-    "mean_displacement": "<dx>/A",
-    "mean_square_displacement": "<dx^2>/A^2",
+    "velocity_variance": ("W_v^2/A^2", "logarithmic"),
+    "mean_displacement": ("<dx>/A", "linear"),
+    "mean_square_displacement": ("<dx^2>/A^2", "linear"),
 }
-_LOGARITHMIC = ("velocity_variance",)  # axes; the others are linear
 _BY_AMPLITUDE = {
     e: {amplitude: chains.dissipative(chains.LARGE, e, amplitude) for amplitude in _AMPLITUDES}
     for e in (0.0, 0.95)
@@ -44,44 +43,37 @@ _BY_AMPLITUDE = {
 
 def _scaled(run: xr.Dataset) -> xr.Dataset:
     """Return W_v^2/A^2, <dx>/A and <dx^2>/A^2, the first two with their errors."""
-    amplitude = chain_of(run).amplitude
-    mean, width = run.mean_displacement, run.displacement_width
+    a, mean, width = chain_of(run).amplitude, run.mean_displacement, run.velocity_width
     return run.assign(
-        velocity_variance=run.velocity_width**2 / amplitude**2,
-        velocity_variance_error=2 * run.velocity_width * run.velocity_width_error / amplitude**2,
-        mean_square_displacement=(mean**2 + width**2) / amplitude**2,
-        mean_displacement=run.mean_displacement / amplitude,
-        mean_displacement_error=run.mean_displacement_error / amplitude,
+        velocity_variance=width**2 / a**2,
+        velocity_variance_error=2 * width * run.velocity_width_error / a**2,
+        mean_square_displacement=(mean**2 + run.displacement_width**2) / a**2,
+        mean_displacement=mean / a,
+        mean_displacement_error=run.mean_displacement_error / a,
     )
 
 
 def _claims_of_amplitude(results: Results) -> list[Claim]:
     first, *others = (f"{amplitude:g}" for amplitude in _AMPLITUDES)
+    quantity = (
+        f"mean over a tenth of the chain and its mirror image at A = {' or '.join(others)} less "
+        f"that at A = {first}, as a share of the plotted range"
+    )
     return [
         Claim(
-            f"{symbol} the same for all A, e = {restitution:g}",
-            **worst(
-                "mean over a tenth of the chain and its mirror image at "
-                f"A = {' or '.join(others)} less that at A = {first}, as a share of the plotted "
-                f"range, {'logarithmic' if name in _LOGARITHMIC else 'linear'} axis",
-                _differences(results, restitution, name),
-                EYE,
-            ),
+            f"{symbol} the same for all A, e = {e:g}",
+            **worst(f"{quantity}, {axis} axis", _differences(results, e, name), EYE),
             source="appendix, fig:amp_influence",
             ours="the amplitudes and restitutions",
         )
-        for restitution in _BY_AMPLITUDE
-        for name, symbol in _SCALED.items()
+        for e in _BY_AMPLITUDE
+        for name, (symbol, axis) in _SCALED.items()
     ]
 
 
 def _differences(results: Results, restitution: float, name: str) -> list[Estimate]:
-    """Return how tenths of the chain differ from those at the first amplitude, by the plot.
-
-    A tenth is averaged with its mirror image. Neighbouring rods move together: the errors come from
-    the scatter between runs.
-    """
-    axis = np.log if name in _LOGARITHMIC else np.asarray
+    """Return how tenths of the chain differ from those at the first amplitude, by the plot."""
+    axis = np.log if _SCALED[name][1] == "logarithmic" else np.asarray
 
     def tenths(run: xr.Dataset) -> Any:
         both = _scaled(mirrored(run))[name].values
@@ -138,7 +130,6 @@ _EFFORT = effort((4, 80, 50), (4, 600, 100))
 _claim = partial(
     Claim, source="appendix, fig:mom_var_gaps", ours="the gaps, the restitutions and the time step"
 )
-Gaps = Mapping[float, Runs]
 
 
 def _with_gap(restitution: float, gap: float) -> Runs:
@@ -165,10 +156,7 @@ def _change(run: xr.Dataset) -> float:
 
 
 def _border_layer(run: xr.Dataset) -> float:
-    """Rods at a border, from the outermost one on, whose ln W_v^2 is ``_FLAT`` above the centre's.
-
-    The mean of both borders counts. Single rods count too: with a large gap the layer has few.
-    """
+    """Rods from the border on, the mean of both, whose ln W_v^2 is above the plateau's."""
     variance = run.velocity_width.values**2
     inward = (variance + variance[::-1])[: run.sizes["particle"] // 2] / 2
     flat = np.log(inward / central_width(run) ** 2) <= _FLAT
@@ -177,8 +165,8 @@ def _border_layer(run: xr.Dataset) -> float:
 
 def _equipartition(run: xr.Dataset) -> float:
     """Ln of m W_v^2/(k W_x^2) in the centre."""
-    ratio = central_width(run) / central_width(run, of="displacement_width")
     chain = chain_of(run)
+    ratio = central_width(run) / central_width(run, of="displacement_width")
     return float(np.log(chain.mass / chain.stiffness * ratio**2))
 
 
@@ -200,50 +188,43 @@ def _claims_of_gap(results: Results) -> list[Claim]:
 
 
 def _plateau_claim(results: Results, e: float, gap: float) -> Claim:
-    numbers = at_choices(_BY_GAP[e], lambda group: group[gap].estimate(results, _change))
-    quantity = "ln of W_v^2 half-way to the border over that in the centre:"
-    if gap == 0:
-        return _claim(f"no plateau without a gap, e = {e:g}", quantity, **numbers)
-    return _claim(
-        f"plateau in the interior, e = {e:g}, g = {gap:g}",
-        quantity,
-        **numbers,
-        within=around(0.0, _FLAT),
-        reason="the gap is too small for the interior to become homogeneous",
-    )
+    about = chains.at_steps(results, _BY_GAP[e], gap, _change)
+    statement = f"no plateau without a gap, e = {e:g}"
+    if gap > 0:
+        statement = f"plateau in the interior, e = {e:g}, g = {gap:g}"
+        about["within"] = around(0.0, _FLAT)
+        about["reason"] = "the gap is too small for the interior to become homogeneous"
+    return _claim(statement, "ln of W_v^2 half-way to the border over that in the centre:", **about)
 
 
 def _widening_claim(results: Results, e: float) -> Claim:
     """Decide whether the plateau widens with every larger gap, by the least of the gains."""
+    layers = {
+        step: [group[gap].estimate(results, _border_layer) for gap in _GAPS]
+        for step, group in _BY_GAP[e].items()
+    }
 
-    def layers(group: Gaps) -> list[Estimate]:
-        return [group[gap].estimate(results, _border_layer) for gap in _GAPS]
-
-    def least_gain(group: Gaps) -> Estimate:
-        gains = [narrow.minus(wide) for narrow, wide in itertools.pairwise(layers(group))]
+    def least_gain(widths: list[Estimate]) -> Estimate:
+        gains = [narrow.minus(wide) for narrow, wide in itertools.pairwise(widths)]
         return min(gains, key=lambda gain: gain.value - 3 * gain.error)
 
-    ours = layers(_BY_GAP[e]["default step"])
-    listed = ", ".join(f"{layer} at g = {gap:g}" for gap, layer in zip(_GAPS, ours, strict=True))
+    ours = zip(_GAPS, layers[chains.DEFAULT], strict=True)
+    listed = ", ".join(f"{layer} at g = {gap:g}" for gap, layer in ours)
     return _claim(
         f"the larger the gap, the wider the plateau, e = {e:g}",
         f"rods at each border where ln W_v^2 is more than {_FLAT:g} above the centre's: {listed}; "
         "what the plateau gains at each border, at least:",
-        **at_choices(_BY_GAP[e], least_gain),
+        **at_choices(layers, least_gain),
         reason="at the larger gaps the plateau reaches the last rod or two already",
     )
 
 
 def _free_centre_claims(results: Results, e: float) -> list[Claim]:
-    """Decide whether the centre moves like a free rod that is damped more strongly.
-
-    Such a rod has less than the free width, and m <v^2> = k <(dx - <dx>)^2>.
-    """
+    """Decide whether the centre moves like a free rod that is damped more strongly."""
     gap, *others = reversed(_GAPS)
     ours, other = _BY_GAP[e].values()
     of_gaps = {f"g = {gap:g}": ours[gap], f"g = {gap:g}, {chains.OTHER}": other[gap]}
     of_gaps |= {f"g = {g:g}": ours[g] for g in others} | {f"g = {_WIDE:g}": _ALMOST_FREE[e]}
-    of_steps = {step: group[gap] for step, group in _BY_GAP[e].items()}
     return [
         _claim(
             f"rods in the centre move like free ones, e = {e:g}",
@@ -256,7 +237,7 @@ def _free_centre_claims(results: Results, e: float) -> list[Claim]:
         _claim(
             f"but with a larger dissipation, e = {e:g}",
             f"g = {gap:g}, ln of W^2/W_v^2 in the centre, that of the dissipation over gamma:",
-            **at_choices(of_steps, lambda runs: runs.estimate(results, _dissipation)),
+            **chains.at_steps(results, _BY_GAP[e], gap, _dissipation),
         ),
     ]
 
@@ -266,7 +247,7 @@ def _draw_gap(results: Results) -> Figure:
     unit = Chain().free_velocity_width ** 2
     for ax, (e, steps) in zip(axes, _BY_GAP.items(), strict=True):
         ax.set_yscale("log")
-        for number, (gap, runs) in enumerate(steps["default step"].items()):
+        for number, (gap, runs) in enumerate(steps[chains.DEFAULT].items()):
             run, label = _scaled(runs.mean(results)), f"$g = {gap:g}$"
             draw_rods(ax, run, "velocity_variance", number=number, unit=unit, label=label)
         along_the_chain(ax)
@@ -281,7 +262,7 @@ GAP = Study(
     name="gap",
     title="Velocity variances of chains with gaps",
     caption="W_v^2 against the normalized particle number, L = 1000, for several gaps g between "
-    "neighbouring rods at their anchors, in radii.",
+    "neighbouring rods at their anchors, in units of R.",
     needs=[runs for steps in _BY_GAP.values() for runs in chains.all_of(steps)]
     + list(_ALMOST_FREE.values()),
     claims=_claims_of_gap,

@@ -29,7 +29,6 @@ from crazybilliards.reproduction.claims.verdicts import (
 )
 from crazybilliards.reproduction.profiles import mirrored
 
-Quantity = Callable[[xr.Dataset], float]
 _S = Chain().thermal_length
 
 
@@ -51,44 +50,30 @@ _INELASTIC = chains.inelastic_at_steps(_SIZES)
 
 def _claims_by_length(results: Results) -> list[Claim]:
     claims = []
-    for sizes in itertools.pairwise(_SIZES):
-        small, large = sizes
+    for small, large in itertools.pairwise(_SIZES):
         shrinks = f"the mean displacement decreases from L = {small} to L = {large}"
         narrows = f"the interior is confined more strongly at L = {large} than at L = {small}"
-        slope, width = "slope of <dx>/s against i_n", "W_x/s in the centre, middle tenth"
-        claims += [
-            _decrease(results, sizes, _swelling, shrinks, slope, "fig.3_2"),
-            _decrease(results, sizes, _confinement, narrows, width, "fig.3_2, inset"),
-        ]
+        for quantity, name, statement, source in (
+            (_swelling, "slope of <dx>/s against i_n", shrinks, "fig.3_2"),
+            (_confinement, "W_x/s in the centre, middle tenth", narrows, "fig.3_2, inset"),
+        ):
+            first, second, numbers = chains.difference(
+                results, _INELASTIC, (small, large), quantity
+            )
+            claim = Claim(
+                statement,
+                f"{name}: {first} less {second}, difference",
+                **numbers,
+                source=f"section seq:e_0, {source}",
+                ours="the sizes and the time step",
+            )
+            claims.append(claim)
     return claims
-
-
-def _decrease(
-    results: Results,
-    sizes: tuple[int, int],
-    measured: Quantity,
-    statement: str,
-    quantity: str,
-    label: str,
-) -> Claim:
-    """Decide at all time steps whether a quantity decreases from one size to the next."""
-
-    def both(group: Mapping[int, Runs]) -> list[Estimate]:
-        return [group[size].estimate(results, measured) for size in sizes]
-
-    small, large = both(_INELASTIC["default step"])
-    return Claim(
-        statement,
-        f"{quantity}: {small} less {large}, difference",
-        **at_choices(_INELASTIC, lambda group: Estimate.minus(*both(group))),
-        source=f"section seq:e_0, {label}",
-        ours="the sizes and the time step",
-    )
 
 
 def _draw_by_length(results: Results) -> Figure:
     figure, axes = panels(1, 2)
-    for number, (size, runs) in enumerate(_INELASTIC["default step"].items()):
+    for number, (size, runs) in enumerate(_INELASTIC[chains.DEFAULT].items()):
         run = runs.mean(results)
         for ax, name in zip(axes, ("mean_displacement", "displacement_width"), strict=True):
             draw_rods(ax, run, name, number=number, unit=_S, label=f"$L = {size}$")
@@ -125,14 +110,11 @@ def _claims_by_restitution(results: Results) -> list[Claim]:
 
 
 def _growth_claim(results: Results, low: float, high: float) -> Claim:
-    def slopes(group: Mapping[float, Runs]) -> list[Estimate]:
-        return [group[e].estimate(results, _swelling) for e in (high, low)]
-
-    of_high, of_low = slopes(_RUNS)
+    of_high, of_low, numbers = chains.difference(results, _STEPS, (high, low), _swelling)
     return Claim(
         f"the mean displacement grows from e = {low:g} to {high:g}",
         f"slope of <dx>/s against i_n: {of_low} and {of_high}, difference",
-        **at_choices(_STEPS, lambda group: Estimate.minus(*slopes(group))),
+        **numbers,
         source="section seq:e_larger, fig.5",
     )
 
@@ -146,6 +128,7 @@ def _power_law_claim(results: Results) -> Claim:
         return min(distances, key=lambda distance: distance.value - 3 * distance.error)
 
     ours, other = _STEPS.values()
+    difference = "the difference of two power laws, b [(i - c)^nu - (L + 1 - c - i)^nu]"
     return Claim(
         "<dx> does not follow a power law",
         f"b i^nu fitted to the left half, rods averaged with their mirror images, e = "
@@ -155,9 +138,7 @@ def _power_law_claim(results: Results) -> Claim:
         number=least(_power_law, ours),
         elsewhere={
             chains.OTHER: least(_power_law, other),
-            "the difference of two power laws, b [(i - c)^nu - (L + 1 - c - i)^nu]": least(
-                _two_power_laws, ours
-            ),
+            difference: least(_two_power_laws, ours),
         },
         source="section seq:e_larger, fig.5",
         ours="the form of the power law, and whether the axes are linear",
@@ -200,21 +181,19 @@ def _energy_claims(results: Results) -> list[Claim]:
         return Estimate(potential.value + sign * kinetic.value, potential.error + kinetic.error)
 
     potential, kinetic = _RUNS[e].estimates(results, _excess)
-    quantity = (
-        f"border's less centre's, in units of m W^2/2: potential {potential}, kinetic {kinetic}"
-    )
-    claim = partial(Claim, source="section seq:e_larger", ours="the restitution")
+    both = f"border's less centre's, in units of m W^2/2: potential {potential}, kinetic {kinetic}"
     return [
-        claim(
-            f"the energy is larger at the border, e = {e:g}",
-            f"{quantity}; their sum",
-            **at_choices(_STEPS, lambda group: excess(group, 1)),
-        ),
-        claim(
-            f"because the potential energy is, e = {e:g}",
-            f"{quantity}; potential less kinetic",
-            **at_choices(_STEPS, lambda group: excess(group, -1)),
-        ),
+        Claim(
+            f"{statement}, e = {e:g}",
+            f"{both}; {quantity}",
+            **at_choices(_STEPS, partial(excess, sign=sign)),
+            source="section seq:e_larger",
+            ours="the restitution",
+        )
+        for statement, quantity, sign in (
+            ("the energy is larger at the border", "their sum", 1),
+            ("because the potential energy is", "potential less kinetic", -1),
+        )
     ]
 
 
@@ -222,9 +201,8 @@ def _excess(run: xr.Dataset) -> Array:
     """Potential and kinetic energy of the border rods less those of the middle tenth [m W^2/2]."""
     chain = chain_of(run)
     potential = run.mean_displacement.values**2 + run.displacement_width.values**2
-    kinetic = run.velocity_width.values**2
     scales = [[chain.thermal_length**2], [chain.free_velocity_width**2]]
-    energy = np.array([potential, kinetic]) / scales
+    energy = np.array([potential, run.velocity_width.values**2]) / scales
     centre = energy[:, middle_tenth(run.sizes["particle"])]
     return np.asarray(energy[:, [0, -1]].mean(axis=1) - centre.mean(axis=1))
 

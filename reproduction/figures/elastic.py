@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -38,49 +40,43 @@ from crazybilliards.reproduction.distributions import (
 
 # -- figure 8: velocities --------------------------------------------------------------
 
+_UNIT = chains.ELASTIC.chain.free_velocity_width
 _RODS = (1, 50)
 _SHOWN = 4.0  # free widths to either side in the plot of a distribution
-_LONG = effort((4, 2000), (4, 2000))
-_SHORT = effort((4, 50, 30), (4, 200))  # Contact Dynamics is off by far more
-_METHODS = {
-    "event-driven": Runs("long chain", Chain(size=chains.LARGE), _LONG, {"observe": ["widths"]}),
-    **{
-        f"Contact Dyn., $dt = {step:g}$": Runs(
-            f"long chain, Contact Dynamics, dt={step:g}",
-            Chain(size=chains.LARGE),
-            _SHORT,
-            {"method": "contact-dynamics", "time_step": step, "observe": ["widths"]},
-        )
-        for step in (1e-2, 1e-3)
-    },
+_LONG = Runs(
+    "long chain", Chain(size=chains.LARGE), effort((4, 2000), (4, 2000)), {"observe": ["widths"]}
+)
+_METHODS = {"event-driven": _LONG} | {
+    f"Contact Dyn., $dt = {step:g}$": replace(
+        _LONG,
+        name=f"long chain, Contact Dynamics, dt={step:g}",
+        effort=effort((4, 50, 30), (4, 200)),  # it is off by far more
+        settings={"method": "contact-dynamics", "time_step": step, "observe": ["widths"]},
+    )
+    for step in (1e-2, 1e-3)
 }
 
 
 def _distance_from_free_rod(runs: Sequence[xr.Dataset]) -> float:
     """Return how far p(v) is off the free rod's, as a share of the plot: the worse of two rods."""
-    unit = chains.ELASTIC.chain.free_velocity_width
-    reach = _SHOWN * unit
-    densities = [histogram(runs, [particle], reach) for particle in _RODS]
-    return max(distance_in_plot(v, p, lambda v: gaussian(v, unit), reach) for v, p in densities)
+    densities = [histogram(runs, [particle], _SHOWN * _UNIT) for particle in _RODS]
+    law = partial(gaussian, width=_UNIT)
+    return max(distance_in_plot(v, p, law, _SHOWN * _UNIT) for v, p in densities)
 
 
 def _claims_of_velocities(results: Results) -> list[Claim]:
-    run, unit = chains.ELASTIC.mean(results), chains.ELASTIC.chain.free_velocity_width
-    differences, errors = run.velocity_width / unit - 1, run.velocity_width_error / unit
-    source = "section seq:e_larger, fig.4.2"
+    claim = partial(Claim, source="section seq:e_larger, fig.4.2")
+    run = chains.ELASTIC.mean(results)
+    differences, errors = run.velocity_width / _UNIT - 1, run.velocity_width_error / _UNIT
+    distance = chains.ELASTIC.estimate_together(results, _distance_from_free_rod)
     return [
-        Claim(
+        claim(
             "W_v of every rod is that of a free rod",
             **worst("W_v/W - 1 of a rod", map(Estimate, differences.values, errors.values), EYE),
-            source=source,
         ),
-        Claim(
+        claim(
             "the distributions of rods 1 and 50 are a free rod's Gaussian",
-            **in_plot(
-                f"p(v) and the free rod's, both axes linear, v to {_SHOWN:g} W",
-                chains.ELASTIC.estimate_together(results, _distance_from_free_rod),
-            ),
-            source=source,
+            **in_plot(f"p(v) and the free rod's, both axes linear, v to {_SHOWN:g} W", distance),
         ),
     ]
 
@@ -90,10 +86,9 @@ def _draw_velocities(results: Results) -> Figure:
     draw_distributions(left, chains.ELASTIC.members(results), _RODS)
     entitle(left, f"$L = {chains.ELASTIC.chain.size}$")
     left.legend(loc="lower center")
-    unit = chains.ELASTIC.chain.free_velocity_width
     for number, (label, runs) in enumerate(_METHODS.items()):
         run = runs.mean(results)
-        draw_rods(right, run, "velocity_width", number=number, unit=unit, label=label)
+        draw_rods(right, run, "velocity_width", number=number, unit=_UNIT, label=label)
     right.axhline(1, color="black", linestyle=":", label="exact")
     along_the_chain(right)
     right.set(ylabel="velocity width $W_v/W$")
@@ -168,8 +163,8 @@ def _draw_displacement(results: Results) -> Figure:
     measured, error = run.mean_displacement.values / s, run.mean_displacement_error.values / s
     exact, fitted = equilibrium(chain_of(run)).mean_displacement.values / s, fit_arctanh(run)(x) / s
     figure, (top, bottom) = panels(2, 1, height=1.7, sharex=True, height_ratios=(2, 1))
-    look: Any = {"number": 0, "color": "black", "linewidth": 0.7, "label": "simulation"}
-    draw_points(top, x, measured, error, **look)
+    look: Any = {"color": "black", "linewidth": 0.7, "label": "simulation"}
+    draw_points(top, x, measured, error, number=0, **look)
     for label, curve, style in (("exact", exact, "C1-"), ("arctanh fit", fitted, "C0--")):
         top.plot(x, curve, style, label=label)
         bottom.plot(x, curve - measured, style)
@@ -195,19 +190,15 @@ ARCTANH = Study(
 # -- figure 17: the density -------------------------------------------------------------------
 
 
-def _claims_of_density(results: Results) -> list[Claim]:
-    return [_match(_run(results, amplitude)) for amplitude in _RUNS]
-
-
-def _match(run: xr.Dataset) -> Claim:
+def _match(results: Results, amplitude: float) -> Claim:
     """Compare the theory fed with the fitted displacement with the simulated density."""
-    chain = chain_of(run)
-    fed = force_balance(chain, displacement=fit_arctanh(run))
+    run = _run(results, amplitude)
+    fed = force_balance(chain_of(run), displacement=fit_arctanh(run))
     run, theory = smooth(run), smooth(fed)
     apart = deviation(run, theory)
-    known = ", which is that of fig:atan" if chain.amplitude == _ARCTANH else ""
+    known = ", which is that of fig:atan" if amplitude == _ARCTANH else ""
     return Claim(
-        f"simulated and integrated densities match perfectly, A = {chain.amplitude:g}",
+        f"simulated and integrated densities match perfectly, A = {amplitude:g}",
         **in_plot(
             "rho(x) of simulation and theory, fed with the fitted displacement, both axes linear, "
             f"vertically up to {100 * apart.maximum:.2f} % of close packing apart",
@@ -231,10 +222,6 @@ def _distance(run: xr.Dataset, theory: xr.Dataset) -> Estimate:
     return furthest_in_plot(distances, run.density_error.values[drawn] / height[1])
 
 
-def _draw_densities(results: Results) -> Figure:
-    return draw_density(elastic_tree({_RUNS[a].name: _run(results, a) for a in _RUNS}))
-
-
 DENSITY = Study(
     number=17,
     name="density",
@@ -246,6 +233,8 @@ DENSITY = Study(
     "(diff_gl) is exact for the rods without their length, as points. What is approximate is to "
     "read rods off a fluid by 1/(1 - 2 rho R); rod by rod it is exact.",
     needs=list(_RUNS.values()),
-    claims=_claims_of_density,
-    draw=_draw_densities,
+    claims=lambda results: [_match(results, amplitude) for amplitude in _RUNS],
+    draw=lambda results: draw_density(
+        elastic_tree({_RUNS[a].name: _run(results, a) for a in _RUNS})
+    ),
 )

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.drawing import COLOURS
@@ -32,13 +32,8 @@ _ENERGY = r"kinetic energy $E$ [M R$^2$/$t_0^2$]"
 
 
 def _from_rest(chain: Chain, duration: float, time_step: float) -> Runs:
-    """Return runs named by their springs."""
-    return Runs(
-        chain.spring,
-        chain,
-        effort((6,), (24,)),
-        {"warmup": 0.0, "observe": ["energy"], "duration": duration, "time_step": time_step},
-    )
+    settings = {"warmup": 0.0, "observe": ["energy"], "duration": duration, "time_step": time_step}
+    return Runs(chain.spring, chain, effort((6,), (24,)), settings)
 
 
 def _at_steps(*runs: Runs) -> dict[str, tuple[Runs, ...]]:
@@ -52,11 +47,11 @@ _LINEAR = _from_rest(Chain(size=100, restitution=1.01, damping=0.4), 300.0, 0.02
 # This spring stiffens as it is stretched: the step is short enough for the last moments.
 _QUADRATIC = _from_rest(_LINEAR.chain.replace(spring="quadratic"), 100.0, 0.002)
 _COUNTED = [
-    Runs(
-        f"collisions from {begin:g}",
-        _LINEAR.chain,
-        _FEW,
-        {"warmup": begin, "duration": _SPAN, "time_step": 0.02, "observe": ["collisions"]},
+    replace(
+        _LINEAR,
+        name=f"collisions from {begin:g}",
+        effort=_FEW,
+        settings={"warmup": begin, "duration": _SPAN, "time_step": 0.02, "observe": ["collisions"]},
     )
     for begin in _BEGINNINGS
 ]
@@ -70,18 +65,11 @@ def _late(run: xr.Dataset, beyond: float) -> tuple[Array, Array]:
     return run.time.values[begin:], energy[begin:]
 
 
-def _rates(run: xr.Dataset) -> tuple[float, float]:
+def _rates(run: xr.Dataset) -> list[float]:
     """Return the growth rates up to the half and from there on."""
     time, energy = _late(run, _GROWING)
-    early, late = time <= _HALF_WAY, run.time.values > _HALF_WAY
-    return (
-        fit_growth(time[early], energy[early]).rate,
-        fit_growth(run.time.values[late], run.kinetic_energy.values[late]).rate,
-    )
-
-
-def _frequency(run: xr.Dataset) -> float:
-    return float(run.collision_rate.values[:-1].mean())  # the last rod has no right neighbour
+    halves = time <= _HALF_WAY, time > _HALF_WAY
+    return [fit_growth(time[half], energy[half]).rate for half in halves]
 
 
 def _singularity(run: xr.Dataset, beyond: float) -> tuple[float, float]:
@@ -100,18 +88,20 @@ def _claims(results: Results) -> list[Claim]:
 
 
 def _frequency_claim(results: Results) -> Claim:
-    def frequencies(counted: tuple[Runs, ...]) -> list[Estimate]:
-        return [runs.estimate(results, _frequency) for runs in counted]
+    def frequency(run: xr.Dataset) -> float:
+        return float(run.collision_rate.values[:-1].mean())  # the last rod has no right neighbour
 
-    steps = _at_steps(*_COUNTED)
-    early, late = frequencies(steps[""])
-    begin, then = _BEGINNINGS
+    steps = {
+        step: [runs.estimate(results, frequency) for runs in counted]
+        for step, counted in _at_steps(*_COUNTED).items()
+    }
+    (early, late), (begin, then) = steps[""], _BEGINNINGS
     return Claim(
         "linear springs: the collision frequency C_f is about constant",
         f"collisions of a contact per t_0: {early} from t = {begin:g} to {begin + _SPAN:g} t_0 and "
         f"{late} from {then:g} to {then + _SPAN:g} t_0, while the energy grows; the second less "
         "the first, over the first:",
-        **at_choices(steps, lambda counted: _change(*frequencies(counted))),
+        **at_choices(steps, lambda frequencies: _change(*frequencies)),
         within=around(0.0, 0.1),
         source="section Anti-Dissipation",
         ours="the spans of time",
@@ -119,36 +109,34 @@ def _frequency_claim(results: Results) -> Claim:
 
 
 def _growth_claim(results: Results) -> Claim:
-    early, late = _LINEAR.estimates(results, _rates)
+    steps = {step: runs.estimates(results, _rates) for step, [runs] in _at_steps(_LINEAR).items()}
+    early, late = steps[""]
     return Claim(
         "linear springs: exponential growth",
         f"rate {early} per t_0 from E = {_GROWING:.0e} to t = {_HALF_WAY:g} t_0, and {late} from "
         f"there to {_LINEAR.settings['duration']:g} t_0; the second less the first, over the "
         "first:",
-        **at_choices(
-            _at_steps(_LINEAR), lambda linear: _change(*linear[0].estimates(results, _rates))
-        ),
+        **at_choices(steps, lambda rates: _change(*rates)),
         within=around(0.0, 0.1),
         source=_SOURCE,
     )
 
 
 def _singularity_claim(results: Results) -> Claim:
-    def fits(quadratic: tuple[Runs, ...]) -> dict[float, list[Estimate]]:
-        """Return exponent and t_c by the energy from which on they are fitted."""
-        return {
-            beyond: quadratic[0].estimates(results, partial(_singularity, beyond=beyond))
+    # By the energy from which on they are fitted: exponents and t_c.
+    steps = {
+        step: {
+            beyond: runs.estimates(results, partial(_singularity, beyond=beyond))
             for beyond in _SINGULAR
         }
-
-    steps = {step: fits(quadratic) for step, quadratic in _at_steps(_QUADRATIC).items()}
+        for step, [runs] in _at_steps(_QUADRATIC).items()
+    }
     listed = ", ".join(f"{beyond:.0e}: {exponent}" for beyond, (exponent, _) in steps[""].items())
     _, time = steps[""][_SINGULAR[0]]
-    runs = _QUADRATIC.members(results)
-    diverged = sum(run.attrs["status"] == "diverged" for run in runs)
+    diverged = [run.attrs["status"] == "diverged" for run in _QUADRATIC.members(results)]
     return Claim(
         "quadratic springs: divergence in finite time, a power law of t_c - t",
-        f"{diverged} of {len(runs)} runs diverged, t_c = {time} t_0; exponent of E "
+        f"{sum(diverged)} of {len(diverged)} runs diverged, t_c = {time} t_0; exponent of E "
         f"by the least energy fitted: {listed}; middle and half the spread, with the error",
         **at_choices(steps, _middle),
         source=f"{_SOURCE}, inset",
@@ -169,29 +157,24 @@ def _draw(results: Results) -> Figure:
         for run in runs.members(results):
             left.semilogy(run.time, run.kinetic_energy, f"C{number}", linewidth=0.6, alpha=0.7)
         left.plot([], [], f"C{number}", label=f"{runs.name} springs")
-    rate = weak_damping_growth_rate(_LINEAR.chain)
-    t = np.array([40.0, _HALF_WAY])
+    rate, t = weak_damping_growth_rate(_LINEAR.chain), np.array([40.0, _HALF_WAY])
     members = _LINEAR.members(results)
     anchor = np.mean([np.interp(90, run.time, run.kinetic_energy) for run in members])
     label = rf"theory: $\exp({rate:.3f}\,t/t_0)$"
     left.semilogy(t, anchor * np.exp(rate * (t - 90)), "k--", label=label)
     left.set(xlabel="time $t$ [$t_0$]", ylabel=_ENERGY, xlim=(0, _HALF_WAY), ylim=(1, 1e8))
     left.legend()
-    _draw_singularity(right, results)
-    return figure
-
-
-def _draw_singularity(ax: Axes, results: Results) -> None:
     look: Any = {"marker": ".", "markersize": 2, "color": COLOURS[1], "alpha": 0.6}
+    look["linestyle"] = "none"
     for run in _QUADRATIC.members(results):
-        _, time = _singularity(run, _SINGULAR[0])
-        left = time - run.time.values
-        ax.loglog(left[left > 0], run.kinetic_energy.values[left > 0], linestyle="none", **look)
-    ax.plot([], [], linestyle="none", **look, label="quadratic springs")
+        until = _singularity(run, _SINGULAR[0])[1] - run.time.values
+        right.loglog(until[until > 0], run.kinetic_energy.values[until > 0], **look)
+    right.plot([], [], **look, label="quadratic springs")
     span = np.array([0.6, 6.0])
-    ax.loglog(span, 3e7 * span**-6.0, "k--", label="slope $-6$")
-    ax.set(xlabel="time left $t_c - t$ [$t_0$]", ylabel=_ENERGY, ylim=(1, 1e12))
-    ax.legend()
+    right.loglog(span, 3e7 * span**-6.0, "k--", label="slope $-6$")
+    right.set(xlabel="time left $t_c - t$ [$t_0$]", ylabel=_ENERGY, ylim=(1, 1e12))
+    right.legend()
+    return figure
 
 
 ENERGY = Study(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -42,10 +42,7 @@ _INELASTIC = {name: chains.inelastic(chains.LARGE, step) for name, step in chain
 
 
 def _misfit_of_gaussian(runs: Sequence[xr.Dataset]) -> float:
-    """Return how far p(v) in the bulk is off its best Gaussian, as a share of the plot.
-
-    Its height, centre and width are free.
-    """
+    """Return how far p(v) in the bulk is off its best Gaussian, as a share of the plot."""
 
     def model(v: Array, height: float, centre: float, width: float) -> Array:
         return np.asarray(height * np.exp(-(((v - centre) / width) ** 2) / 2))
@@ -64,23 +61,8 @@ def _outward_skewness(run: xr.Dataset) -> float:
 
 
 def _claims_inelastic(results: Results) -> list[Claim]:
-    def kurtosis(runs: Runs) -> Estimate:
-        return runs.estimate(results, lambda run: mean_shape(run, _BULK, "velocity_kurtosis"))
-
-    def skewness(runs: Runs) -> Estimate:
-        return runs.estimate(results, _outward_skewness)
-
-    def magnitude(runs: Runs) -> Estimate:
-        value, error = skewness(runs)
-        return Estimate(abs(value), error)
-
-    def narrowing(runs: Runs) -> Estimate:
-        border, centre = (runs.estimate(results, width) for width in (border_width, central_width))
-        return border.minus(centre)
-
-    ours, *others = _INELASTIC.items()
-    peaks = ", ".join(f"{step}: {kurtosis(runs)}" for step, runs in others)
-    claim = partial(Claim, source="section seq:e_0, fig.1")
+    def of_each(quantity: chains.Quantity) -> dict[str, Estimate]:
+        return {step: runs.estimate(results, quantity) for step, runs in _INELASTIC.items()}
 
     def misfit(runs: Runs) -> dict[str, Any]:
         return in_plot(
@@ -89,6 +71,11 @@ def _claims_inelastic(results: Results) -> list[Claim]:
             runs.estimate_together(results, _misfit_of_gaussian),
         )
 
+    skewness, border, centre = map(of_each, (_outward_skewness, border_width, central_width))
+    peaks = of_each(lambda run: mean_shape(run, _BULK, "velocity_kurtosis"))
+    ours = peaks.pop(chains.DEFAULT)
+    narrowing = {step: border[step].minus(centre[step]) for step in border}
+    claim = partial(Claim, source="section seq:e_0, fig.1")
     return [
         claim(
             "in the bulk the distributions can be fitted by Gaussians",
@@ -96,18 +83,19 @@ def _claims_inelastic(results: Results) -> list[Claim]:
             ours="the time step, and whether the axes are linear",
             reason="the shorter the step, the more peaked is the distribution and the longer are "
             "its tails, while the kicks of a long step, which are Gaussian, hide this; excess "
-            f"kurtosis {kurtosis(ours[1])} at the {ours[0]}, {peaks}",
+            f"kurtosis {ours} at the {chains.DEFAULT}, "
+            + ", ".join(f"{step}: {kurtosis}" for step, kurtosis in peaks.items()),
         ),
         claim(
             "close to the border the distributions are slightly skewed",
-            f"skewness of the outer three rods {skewness(ours[1])}, outward positive; its "
+            f"skewness of the outer three rods {skewness[chains.DEFAULT]}, outward positive; its "
             "magnitude",
-            **at_choices(_INELASTIC, magnitude),
+            **at_choices(skewness, lambda one: Estimate(abs(one.value), one.error)),
         ),
         claim(
             "narrower inside than at the border",
             "W_v(border) - W_v(centre) =",
-            **at_choices(_INELASTIC, narrowing),
+            **at_choices(narrowing, lambda one: one),
         ),
     ]
 
@@ -121,7 +109,7 @@ INELASTIC = Study(
     "runs. Velocities in units of the free width W.",
     needs=list(_INELASTIC.values()),
     claims=_claims_inelastic,
-    draw=partial(_draw, runs=_INELASTIC["default step"], particles=(1, 10, 100, 500)),
+    draw=partial(_draw, runs=_INELASTIC[chains.DEFAULT], particles=(1, 10, 100, 500)),
 )
 
 # -- figures 10 and 11: flippers --------------------------------------------------------------
@@ -142,40 +130,36 @@ def _border_density(run: xr.Dataset) -> tuple[Array, Array]:
 
 def _tail_ratio(run: xr.Dataset) -> float:
     """Length of the border's outward tail far out over that nearer by: 1 if exponential."""
-    v, p = _border_density(run)
-    width = border_width(run)
-    return tail_length(v, p, 5 * width) / tail_length(v, p, _TAIL * width)
+    far, near = (tail_length(*_border_density(run), w * border_width(run)) for w in (5, _TAIL))
+    return far / near
 
 
 def _claims_weakly_damped(results: Results) -> list[Claim]:
-    def less(least: float, quantity: Callable[[xr.Dataset], float]) -> dict[str, Any]:
-        return at_choices(
-            _FLIPPERS,
-            lambda group: group[_WEAK].estimate(results, quantity).minus(Estimate(least, 0.0)),
-        )
-
-    runs = _FLIPPERS["default step"][_WEAK]
+    runs = _FLIPPERS[chains.DEFAULT][_WEAK]
     unit, ends = runs.chain.free_velocity_width, (1, _SIZE)
     kurtosis = runs.estimate(results, lambda run: mean_shape(run, ends, "velocity_kurtosis"))
     ratio = runs.estimate(results, _tail_ratio)
-    claim = partial(Claim, source="section Anti-Dissipation, fig:mom_hist_antidiss_gamma4")
+    measured = partial(chains.at_steps, results, _FLIPPERS, _WEAK)
+    source = "section Anti-Dissipation, fig:mom_hist_antidiss_gamma4"
     return [
-        claim(
+        Claim(
             "every rod is faster than a free one",
             "W_v/W of the slowest rod less 1:",
-            **less(1.0, lambda run: float(run.velocity_width.min()) / unit),
+            **measured(lambda run: float(run.velocity_width.min()) / unit - 1.0),
+            source=source,
         ),
-        claim(
+        Claim(
             "large velocities are likelier at the border than in the centre",
             "W_v(border) - W_v(centre) =",
-            **less(0.0, lambda run: border_width(run) - central_width(run)),
+            **measured(lambda run: border_width(run) - central_width(run)),
+            source=source,
         ),
-        claim(
+        Claim(
             "the tail at the border falls off exponentially",
             f"excess kurtosis {kurtosis}; length of the tail beyond 5 W_v over that beyond 3 W_v "
             f"{ratio} (exponential: 1, Gaussian: 0.65), less half-way between the two",
-            **less(0.825, _tail_ratio),
-            source="section Anti-Dissipation, fig:mom_hist_antidiss_gamma4, inset",
+            **measured(lambda run: _tail_ratio(run) - 0.825),
+            source=f"{source}, inset",
             reason="the tail falls off faster than an exponential",
         ),
     ]
@@ -189,14 +173,14 @@ def _claims_strongly_damped(results: Results) -> list[Claim]:
         Claim(
             "large velocities are likelier in the centre than at the border",
             "W_v(centre) - W_v(border) =",
-            **at_choices(_FLIPPERS, lambda group: group[_STRONG].estimate(results, widening)),
+            **chains.at_steps(results, _FLIPPERS, _STRONG, widening),
             source="section Anti-Dissipation, fig:mom_hist_antidiss_gamma10",
         )
     ]
 
 
 def _draw_weakly_damped(results: Results) -> Figure:
-    runs = _FLIPPERS["default step"][_WEAK].members(results)
+    runs = _FLIPPERS[chains.DEFAULT][_WEAK].members(results)
     figure, [ax] = panels(1, 1, height=2.9)
     draw_distributions(ax, runs, _FLIPPERS_SHOWN)
     both = [_border_density(run) for run in runs]
@@ -231,5 +215,5 @@ STRONGLY_DAMPED = Study(
     "width. Dotted: a free rod. Error bars: standard errors from independent runs.",
     needs=[group[_STRONG] for group in _FLIPPERS.values()],
     claims=_claims_strongly_damped,
-    draw=partial(_draw, runs=_FLIPPERS["default step"][_STRONG], particles=_FLIPPERS_SHOWN),
+    draw=partial(_draw, runs=_FLIPPERS[chains.DEFAULT][_STRONG], particles=_FLIPPERS_SHOWN),
 )

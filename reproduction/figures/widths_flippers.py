@@ -35,6 +35,8 @@ from crazybilliards.reproduction.claims.verdicts import (
 from crazybilliards.reproduction.profiles import bulge, mirrored, nu
 
 _RESTITUTION = 1.05
+_CONVEX = "ln of the border's width over the centre's:"
+_CONCAVE = "ln of the centre's width over the border's:"
 
 
 def _figure(
@@ -61,13 +63,9 @@ def _figure(
 _SIZE = 100
 _DAMPINGS = (4.0, 5.0, 6.0, 8.0, 10.0)
 _WEAK, _STRONG = _DAMPINGS[0], _DAMPINGS[-1]
-_BY_DAMPING = chains.at_both_steps(
-    {damping: chains.flippers(_SIZE, damping) for damping in _DAMPINGS}
-)
-_DAMPED = {damping: chains.gas(_SIZE, _RESTITUTION, damping) for damping in _DAMPINGS}
-_claim_by_damping = partial(
-    Claim, source="section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq"
-)
+_BY_DAMPING = chains.at_both_steps({g: chains.flippers(_SIZE, g) for g in _DAMPINGS})
+_DAMPED = {g: chains.gas(_SIZE, _RESTITUTION, g) for g in _DAMPINGS}
+_SOURCE = "section Anti-Dissipation, fig:mom_var_antidiss_diff_gamma_sq"
 
 
 def _crowding(run: xr.Dataset) -> float:
@@ -76,31 +74,29 @@ def _crowding(run: xr.Dataset) -> float:
     return float(np.log(rate[middle_tenth(rate.size)].mean() / rate[[0, -1]].mean()))
 
 
+def _concavity(run: xr.Dataset) -> float:
+    return -bulge(run)
+
+
 def _claims_by_damping(results: Results) -> list[Claim]:
-    bulges = [runs.estimate(results, bulge) for runs in _BY_DAMPING["default step"].values()]
+    bulges = [runs.estimate(results, bulge) for runs in _BY_DAMPING[chains.DEFAULT].values()]
     change = np.interp(0.0, [value for value, _ in bulges][::-1], _DAMPINGS[::-1])
-    return [
-        _claim_by_damping(
-            f"convex at gamma = {_WEAK:g}",
-            "ln of the border's width over the centre's:",
-            **at_choices(_BY_DAMPING, lambda group: group[_WEAK].estimate(results, bulge)),
-        ),
-        _claim_by_damping(
-            f"concave at gamma = {_STRONG:g}",
-            f"it changes at gamma = {change:.1f}; ln of the centre's width over the border's:",
-            **at_choices(_BY_DAMPING, lambda group: -group[_STRONG].estimate(results, bulge)),
-        ),
-        *(_crowding_claim(results, damping) for damping in (_STRONG, _WEAK)),
-        _power_law_claim(results),
-    ]
-
-
-def _crowding_claim(results: Results, damping: float) -> Claim:
-    return _claim_by_damping(
-        f"rods collide more often in the bulk than at the border, gamma = {damping:g}",
-        "ln of the collision rate of the middle tenth of the contacts over that of the outermost:",
-        **at_choices(_BY_DAMPING, lambda group: group[damping].estimate(results, _crowding)),
+    more = "rods collide more often in the bulk than at the border, gamma ="
+    rate = (
+        "ln of the collision rate of the middle tenth of the contacts over that of the outermost:"
     )
+    changes = f"it changes at gamma = {change:.1f}; {_CONCAVE}"
+    stated: tuple[tuple[str, str, float, chains.Quantity], ...] = (
+        (f"convex at gamma = {_WEAK:g}", _CONVEX, _WEAK, bulge),
+        (f"concave at gamma = {_STRONG:g}", changes, _STRONG, _concavity),
+        (f"{more} {_STRONG:g}", rate, _STRONG, _crowding),
+        (f"{more} {_WEAK:g}", rate, _WEAK, _crowding),
+    )
+    claims = [
+        Claim(name, words, **chains.at_steps(results, _BY_DAMPING, g, quantity), source=_SOURCE)
+        for name, words, g, quantity in stated
+    ]
+    return [*claims, _power_law_claim(results)]
 
 
 def _power_law_claim(results: Results) -> Claim:
@@ -110,7 +106,7 @@ def _power_law_claim(results: Results) -> Claim:
         words = f"nu = {nu(ours[_WEAK].mean(results)):.3f} fits best"
     except ValueError:
         words = "no such law fits"
-    return _claim_by_damping(
+    return Claim(
         f"the convex profile at gamma = {_WEAK:g} cannot be described by a power law",
         "gamma W_v against i for the five dampings, rods averaged with their mirror images, both "
         f"axes linear: {words}; how much further than an eye sees, {EYE:g} of the plotted range, "
@@ -120,6 +116,7 @@ def _power_law_claim(results: Results) -> Claim:
             "both axes logarithmic": _beyond_the_eye(results, ours, np.log),
             chains.OTHER: _beyond_the_eye(results, other, np.asarray),
         },
+        source=_SOURCE,
         ours="whether the axes are linear",
         reason="a sum of two flat power laws fits",
     )
@@ -137,26 +134,22 @@ def _beyond_the_eye(
         fit = fit_border_power_law(run)
     except ValueError:  # no such law fits
         return Estimate(1.0 - EYE, 0.0)
-    i, width, error = (
-        run[name].values for name in ("particle", "velocity_width", "velocity_width_error")
-    )
+    width, error = run.velocity_width.values, run.velocity_width_error.values
     fine = np.geomspace(1, _SIZE, 2000)
-    distances = distances_in_plot(
-        axes(i), axes(_WEAK * width), axes(fine), axes(_WEAK * fit(fine)), y_range=(low, high)
-    )
+    symbols, line = (run.particle.values, _WEAK * width), (fine, _WEAK * fit(fine))
+    distances = distances_in_plot(*map(axes, (*symbols, *line)), y_range=(low, high))
     below, above = axes(_WEAK * (width - error)), axes(_WEAK * (width + error))
     furthest = furthest_in_plot(distances, (above - below) / 2 / (high - low))
     return furthest.minus(Estimate(EYE, 0.0))
 
 
 def _draw_by_damping(results: Results) -> Figure:
-    curves = {}
-    for damping, runs in _BY_DAMPING["default step"].items():
-        # gamma W_v over that of a free rod at gamma = 1, A/sqrt(2 m).
-        unit = runs.chain.replace(damping=1.0).free_velocity_width / damping
-        curves[rf"$\gamma = {damping:g}$"] = runs, _DAMPED[damping], unit
-    label = r"$\gamma W_v/(A/\sqrt{2m})$  [(M/$t_0$)$^{1/2}$]"
-    return _figure(results, curves, label)
+    unit = Chain().free_velocity_width  # at gamma = 1: A/sqrt(2 m)
+    curves = {
+        rf"$\gamma = {g:g}$": (runs, _DAMPED[g], unit / g)
+        for g, runs in _BY_DAMPING[chains.DEFAULT].items()
+    }
+    return _figure(results, curves, r"$\gamma W_v/(A/\sqrt{2m})$  [(M/$t_0$)$^{1/2}$]")
 
 
 BY_DAMPING = Study(
@@ -184,36 +177,26 @@ _DIVERGING = Runs(
     {"duration": 1000.0, "warmup": 0.0, "observe": ["energy"]},
 )
 _UNSTEADY = {
-    "default step": _DIVERGING,
+    chains.DEFAULT: _DIVERGING,
     chains.OTHER: _DIVERGING.at_step(chains.OTHER_STEP, _DIVERGING.effort),
 }
 
 
 def _claims_by_length(results: Results) -> list[Claim]:
-    def growth(group: Mapping[int, Runs]) -> Estimate:
-        short, long = (group[size].estimate(results, central_width) for size in (_SHORT, _LONG))
-        return long.minus(short)
-
     def diverged(runs: Runs) -> list[bool]:
         return [run.attrs["status"] == "diverged" for run in runs.members(results)]
 
     claim = partial(Claim, source="section Anti-Dissipation, fig:antidiss_diff_L")
+    measured = partial(chains.at_steps, results, _BY_LENGTH)
+    _, _, growth = chains.difference(results, _BY_LENGTH, (_LONG, _SHORT), central_width)
     released = diverged(_DIVERGING)
     return [
-        claim(
-            f"concave at L = {_SHORT}",
-            "ln of the centre's width over the border's:",
-            **at_choices(_BY_LENGTH, lambda group: -group[_SHORT].estimate(results, bulge)),
-        ),
-        claim(
-            f"convex at L = {_LONG}",
-            "ln of the border's width over the centre's:",
-            **at_choices(_BY_LENGTH, lambda group: group[_LONG].estimate(results, bulge)),
-        ),
+        claim(f"concave at L = {_SHORT}", _CONCAVE, **measured(_SHORT, _concavity)),
+        claim(f"convex at L = {_LONG}", _CONVEX, **measured(_LONG, bulge)),
         claim(
             "the longer the chain, the larger W_v",
             f"W_v in the centre at L = {_LONG} less that at L = {_SHORT}:",
-            **at_choices(_BY_LENGTH, growth),
+            **growth,
         ),
         claim(
             f"without a steady state at L = {_DIVERGING.chain.size}",
@@ -228,7 +211,7 @@ def _claims_by_length(results: Results) -> list[Claim]:
 def _draw_by_length(results: Results) -> Figure:
     curves = {
         f"$L = {size}$": (runs, _OF_LENGTH[size], runs.chain.free_velocity_width)
-        for size, runs in _BY_LENGTH["default step"].items()
+        for size, runs in _BY_LENGTH[chains.DEFAULT].items()
     }
     return _figure(results, curves, "velocity width $W_v/W$")
 

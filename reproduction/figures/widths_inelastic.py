@@ -36,18 +36,11 @@ _NU, _PRECISION = -0.46, 0.005  # "nu ~ -0.46": half a unit of the last digit
 _SAME = 2 * _PRECISION  # two numbers that are both written -0.46 differ by less
 
 
-def _profiles(results: Results, group: Mapping[int, Runs]) -> list[xr.Dataset]:
-    return [runs.mean(results) for runs in group.values()]
-
-
 def _narrowing(runs: list[xr.Dataset]) -> Estimate:
     """Return 1 - W_v/W of the fastest rod of all chains."""
     widest = max(runs, key=lambda run: float(run.velocity_width.max()))
     rod = widest.isel(particle=int(widest.velocity_width.values.argmax()))
-    share, error = (
-        float(width) / _FREE for width in (rod.velocity_width, rod.velocity_width_error)
-    )
-    return Estimate(1 - share, error)
+    return Estimate(1 - float(rod.velocity_width) / _FREE, float(rod.velocity_width_error) / _FREE)
 
 
 def _difference_of_exponents(results: Results, group: Mapping[int, Runs]) -> dict[str, Any]:
@@ -59,28 +52,28 @@ def _difference_of_exponents(results: Results, group: Mapping[int, Runs]) -> dic
 
 
 def _claims_along(results: Results) -> list[Claim]:
-    claim = partial(
-        Claim,
-        source="section seq:e_0, eq:power_law, fig.2",
-        ours="the sizes below 1000 and the time step",
-    )
+    profiles = {
+        step: [runs.mean(results) for runs in group.values()] for step, group in _STEPS.items()
+    }
+    claim = partial(Claim, ours="the sizes below 1000 and the time step")
+    source = "section seq:e_0, eq:power_law, fig.2"
     return [
         claim(
             "collisions make every velocity distribution narrower than a free rod's",
             "1 - W_v/W of the fastest rod of all four chains:",
-            **at_choices(_STEPS, lambda group: _narrowing(_profiles(results, group))),
+            **at_choices(profiles, _narrowing),
             source="section seq:e_0, fig.2",
         ),
         claim(
             "W_v(i) can be fitted by a sum of two power laws",
-            **at_choices(
-                _STEPS, lambda group: fits_in_plot("four chains", _profiles(results, group))
-            ),
+            **at_choices(profiles, partial(fits_in_plot, "four chains")),
+            source=source,
         ),
         *(_nu_claim(results, size) for size in _SIZES),
         claim(
             "the same exponent for all L",
-            **at_choices(_STEPS, lambda group: _difference_of_exponents(results, group)),
+            **at_choices(_STEPS, partial(_difference_of_exponents, results)),
+            source=source,
         ),
     ]
 
@@ -89,7 +82,7 @@ def _nu_claim(results: Results, size: int) -> Claim:
     def weighted(run: xr.Dataset) -> float:
         return fit_border_power_law(run, weighted=True).exponent
 
-    numbers = at_choices(_STEPS, lambda group: group[size].estimate(results, nu))
+    numbers = chains.at_steps(results, _STEPS, size, nu)
     by_errors = chains.inelastic(size).estimate(results, weighted)
     numbers["elsewhere"]["rods weighed by their error bars"] = by_errors
     return Claim(
@@ -104,15 +97,13 @@ def _nu_claim(results: Results, size: int) -> Claim:
 def _draw_along(results: Results) -> Figure:
     figure, (widths, exponents) = panels(1, 2, height=3.2, width_ratios=(1.4, 1))
     widths.set(xscale="log", yscale="log")
-    for number, run in enumerate(_profiles(results, _STEPS["default step"])):
-        size, label = _SIZES[number], f"$L = {_SIZES[number]}$"
-        look: Any = {"number": number, "along": "particle", "label": label}
+    for number, (size, runs) in enumerate(_STEPS[chains.DEFAULT].items()):
+        run, theory, colour = runs.mean(results), results[_GAS[size].name], COLOURS[number]
+        look: Any = {"number": number, "along": "particle", "label": f"$L = {size}$"}
         draw_rods(widths, run, "velocity_width", unit=_FREE, **look)
         i = np.geomspace(1, size, 200)
-        widths.plot(i, fit_border_power_law(run)(i) / _FREE, color=COLOURS[number])
-        theory = results[_GAS[size].name]
-        width = theory.velocity_width / _FREE
-        widths.plot(theory.particle, width, ":", color=COLOURS[number], zorder=4)
+        widths.plot(i, fit_border_power_law(run)(i) / _FREE, color=colour)
+        widths.plot(theory.particle, theory.velocity_width / _FREE, ":", color=colour, zorder=4)
     widths.plot([], [], color="0.4", label="fit of two power laws")
     widths.plot([], [], ":", color="0.4", label="gas")
     widths.legend(loc="lower left")
@@ -125,13 +116,12 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
     """Draw nu against the time step, the theory's as crosses at the left margin."""
     margin = 2e-4
     for number, size in enumerate(_SIZES):
-        exponents = {
-            _time_step(results, group[size]): group[size].estimate(results, nu)
+        exponents = sorted(
+            (_time_step(results, group[size]), *group[size].estimate(results, nu))
             for group in _STEPS.values()
-        }
-        values, errors = np.transpose([exponents[step] for step in sorted(exponents)])
+        )
         look: Any = {"number": number, "linewidth": 0.8, "linestyle": "-"}
-        draw_points(ax, sorted(exponents), values, errors, **look)
+        draw_points(ax, *np.transpose(exponents), **look)
         at = margin * 1.25 ** (number - 1.5)  # beside one another
         ax.plot(at, nu(results[_GAS[size].name]), **_CROSS, color=COLOURS[number])
     ax.axhline(_NU, color="0.4", linestyle="--", label="paper")
@@ -163,9 +153,8 @@ ALONG = Study(
 
 _EXPONENT = -0.38  # of the paper, of the same precision
 _ALL_STEPS = chains.inelastic_at_steps(chains.SIZES)
-# Beyond the paper: the default step would take hours there. These steps are in the ratio of the
-# widths squared, so that the velocity kick of a step is two thirds of the central width at every
-# size: the error of the step is then the same for all, and leaves the exponent alone.
+# Beyond the paper: the default step would take hours there. The velocity kick of these steps is two
+# thirds of the central width at both sizes, so that their error leaves the exponent alone.
 _LONG = {
     size: Runs(
         f"long L={size}",
@@ -192,7 +181,7 @@ def _power_law(widths: dict[int, Estimate], least: int = 1) -> Fit:
 def _claims_by_length(results: Results) -> list[Claim]:
     widths = {name: _central_widths(results, group) for name, group in _ALL_STEPS.items()}
     fits = {name: _power_law(by_size) for name, by_size in widths.items()}
-    fits["L = 30 to 1000"] = _power_law(widths["default step"], least=30)
+    fits["L = 30 to 1000"] = _power_law(widths[chains.DEFAULT], least=30)
     return [
         Claim(
             "W_v^min ~ L^-0.38, L = 10 to 1000",
@@ -209,7 +198,7 @@ def _draw_by_length(results: Results) -> Figure:
     figure, (top, bottom) = panels(2, 1, height=2.0, height_ratios=(2, 1), sharex=True)
     groups = _ALL_STEPS | {"kick 2/3 of $W_v$": _LONG}
     series = {name: _central_widths(results, group) for name, group in groups.items()}
-    reference = _power_law(series["default step"])
+    reference = _power_law(series[chains.DEFAULT])
     for number, (label, widths) in enumerate(series.items()):
         sizes = np.array(list(widths))
         values, errors = np.transpose(list(widths.values()))

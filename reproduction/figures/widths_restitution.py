@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -32,7 +31,7 @@ _CROSSES: dict[str, dict[str, Any]] = {
 
 
 def _exponents(results: Results, group: Mapping[float, Runs]) -> dict[float, Estimate]:
-    return {e: -runs.estimate(results, nu) for e, runs in group.items()}
+    return {e: runs.estimate(results, nu).times(-1) for e, runs in group.items()}
 
 
 def _exponential(exponents: Mapping[float, Estimate]) -> Fit:
@@ -41,37 +40,31 @@ def _exponential(exponents: Mapping[float, Estimate]) -> Fit:
 
 def _claims(results: Results) -> list[Claim]:
     low, high = chains.RESTITUTIONS[0], chains.RESTITUTIONS[-1]
-    claim = partial(
-        Claim,
-        source="section seq:e_larger, fig.4",
-        ours="the restitutions (those of fig.5, and 0.5) and the time step",
-    )
+    at_low, at_high, flatter = chains.difference(results, _STEPS, (low, high), bulge)
+    claim = partial(Claim, ours="the restitutions (those of fig.5, and 0.5) and the time step")
+    source = "section seq:e_larger, fig.4"
 
-    def unevenness(group: Mapping[float, Runs], e: float) -> Estimate:
-        return group[e].estimate(results, bulge)
-
-    def means(group: Mapping[float, Runs]) -> list[xr.Dataset]:
-        return [runs.mean(results) for runs in group.values()]
+    def fits(group: Mapping[float, Runs]) -> dict[str, Any]:
+        return fits_in_plot("six restitutions", [runs.mean(results) for runs in group.values()])
 
     return [
         claim(
             "the larger e, the less the width varies along the chain",
-            f"ln of the border's width over the centre's: {unevenness(_RUNS, low)} at e = {low:g} "
-            f"and {unevenness(_RUNS, high)} at e = {high:g}, difference",
-            **at_choices(
-                _STEPS, lambda group: unevenness(group, low).minus(unevenness(group, high))
-            ),
+            f"ln of the border's width over the centre's: {at_low} at e = {low:g} and {at_high} at "
+            f"e = {high:g}, difference",
+            **flatter,
+            source=source,
         ),
         claim(
             "W_v(i) is described by a sum of two power laws at every e < 1",
-            **at_choices(_STEPS, lambda group: fits_in_plot("six restitutions", means(group))),
-            source="section seq:e_larger, fig.4, eq:power_law",
+            **at_choices(_STEPS, fits),
+            source=f"{source}, eq:power_law",
             reason="the two power laws leave systematic residuals",
         ),
         claim(
             "-nu depends on e like exp(-lambda (1 - e)) + d, lambda unknown",
-            **at_choices(_STEPS, lambda group: _residuals(results, group)),
-            source="section seq:e_larger, fig.4, inset",
+            **at_choices(_STEPS, partial(_residuals, results)),
+            source=f"{source}, inset",
             reason="the errors of the exponents are about as large as the limit",
         ),
     ]
@@ -128,14 +121,11 @@ def _draw_widths(ax: Axes, results: Results) -> None:
                 ax.plot(theory.normalized_particle, theory.velocity_width / _UNIT, **look)
     along_the_chain(ax)
     for name, theories in solved.items():
-        ax.plot(
-            [], [], chains.LINES[name], color="0.4", label=rf"{name}, $e \geq {min(theories):g}$"
-        )
+        label = rf"{name}, $e \geq {min(theories):g}$"
+        ax.plot([], [], chains.LINES[name], color="0.4", label=label)
 
 
-def _draw_by_restitution(
-    ax: Axes, results: Results, quantity: Callable[[xr.Dataset], float]
-) -> None:
+def _draw_by_restitution(ax: Axes, results: Results, quantity: chains.Quantity) -> None:
     """Draw a quantity of the simulations, of the gas and of its mean field against e."""
     values, errors = np.transpose([runs.estimate(results, quantity) for runs in _RUNS.values()])
     draw_points(ax, list(_RUNS), values, errors, number=0, color="black", label="simulation")
