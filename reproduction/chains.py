@@ -25,8 +25,7 @@ STEPS = {DEFAULT: None, "dt = 0.01": 1e-2, "dt = 0.003": 3e-3, "dt = 0.001": 1e-
 OTHER_STEP, OTHER = 1e-2, "dt = 0.01"
 
 # By the number of rods from which on it holds. The longest chains have warm-ups of their own:
-# W_v and <dx> of 1000 rods that start at their anchors are steady, to 2 %, after 20 time units at
-# e = 0 and 0.95. The relaxation time, 8.4, is that of the motion of all rods together.
+# W_v and <dx> of 1000 rods that start at their anchors are steady, to 2 %, after 20 time units.
 _DISSIPATIVE = {
     1: effort((4, 1000), (8, 24_000)),
     101: effort((4, 500), (8, 6000)),
@@ -40,11 +39,9 @@ _INELASTIC = {
     101: effort((4, 500), (20, 6000)),
     LARGE: effort((4, 40, 20), (30, 500, 50)),
 }
-# At the largest restitution widths fluctuate for longer: whether the fit misses a rod there needs
-# more runs.
+# At the largest restitution widths fluctuate for longer.
 _LARGEST = effort((4, 40, 20), (24, 500, 50))
-# Runs at the second restitution cost most, and other amplitudes are compared with all the runs at
-# A = 1. So many decide what they can decide.
+# Runs at the second restitution cost most. Other amplitudes are compared with all those at A = 1.
 _FEWER = effort((4, 40, 20), (6, 500, 50))
 _AT_STEP = {
     1: effort((4, 400), (6, 6000)),
@@ -54,14 +51,15 @@ _AT_STEP = {
 }
 _AGAIN = effort((4, 40, 20), (4, 200, 50))
 _FLIPPERS = effort((4, 1000), (8, 8000))
-# Whether the fit of a power law to the profile of these, (size, damping), misses a rod needs more.
-_MOST_FLIPPERS = (100, 4.0)
+# Whether a power law fits the profile of 100 rods at gamma = 4 needs more.
 _FLIPPERS_LONG = effort((4, 1000), (32, 8000))
 _FLIPPERS_AGAIN = effort((4, 300), (4, 1500))
 
 Quantity = Callable[[xr.Dataset], float]
 Key = TypeVar("Key", bound=Hashable)
 Need = TypeVar("Need", Runs, Solution)
+Steps = Mapping[str, Mapping[Key, Runs]]  # by the names of time steps, the first the default one
+_OBSERVED = {"observe": ["widths", "velocities"]}
 
 
 def _of_size(efforts: Mapping[int, Effort], size: int) -> Effort:
@@ -79,7 +77,7 @@ def dissipative(size: int, restitution: float, amplitude: float = 1.0) -> Runs:
         f"L={size} e={restitution:g} A={amplitude:g}",
         Chain(size=size, restitution=restitution, amplitude=amplitude),
         chosen,
-        {"observe": ["widths", "velocities"]},
+        _OBSERVED,
     )
 
 
@@ -99,18 +97,13 @@ def flippers(size: int, damping: float) -> Runs:
     return Runs(
         f"L={size} gamma={damping:g}",
         Chain(size=size, restitution=1.05, damping=damping),
-        _FLIPPERS_LONG if (size, damping) == _MOST_FLIPPERS else _FLIPPERS,
+        _FLIPPERS_LONG if (size, damping) == (100, 4.0) else _FLIPPERS,
         {"observe": ["widths", "velocities", "collisions", "avalanches", "triggered-collisions"]},
     )
 
 
 # A quarter of a second each, so that both qualities can afford it.
-ELASTIC = Runs(
-    "L=100 e=1",
-    Chain(size=100),
-    effort((8, 50_000), (8, 50_000)),
-    {"observe": ["widths", "velocities"]},
-)
+ELASTIC = Runs("L=100 e=1", Chain(size=100), effort((8, 50_000), (8, 50_000)), _OBSERVED)
 
 
 def at_both_steps(runs: Mapping[Key, Runs]) -> dict[str, dict[Key, Runs]]:
@@ -124,18 +117,13 @@ def at_both_steps(runs: Mapping[Key, Runs]) -> dict[str, dict[Key, Runs]]:
     return {DEFAULT: dict(runs), OTHER: {key: again(one) for key, one in runs.items()}}
 
 
-def at_steps(
-    results: Results, steps: Mapping[str, Mapping[Key, Runs]], key: Key, quantity: Quantity
-) -> dict[str, Any]:
+def at_steps(results: Results, steps: Steps[Key], key: Key, quantity: Quantity) -> dict[str, Any]:
     """Return what a claim takes of a quantity of some runs, by their time step."""
     return at_choices(steps, lambda group: group[key].estimate(results, quantity))
 
 
 def difference(
-    results: Results,
-    steps: Mapping[str, Mapping[Key, Runs]],
-    keys: tuple[Key, Key],
-    quantity: Quantity,
+    results: Results, steps: Steps[Key], keys: tuple[Key, Key], quantity: Quantity
 ) -> tuple[Estimate, Estimate, dict[str, Any]]:
     """Return a quantity of two runs, and what a claim takes of the first less the second."""
 
@@ -151,9 +139,7 @@ def all_of(groups: Mapping[Any, Mapping[Any, Need]]) -> list[Need]:
     return [need for group in groups.values() for need in group.values()]
 
 
-def gas(
-    size: int, restitution: float, damping: float = 1.0, *, correlations: bool = True
-) -> Solution:
+def gas(size: int, restitution: float, damping: float = 1.0, correlations: bool = True) -> Solution:
     """Return the steady state of the gas; without correlations its mean field."""
     name = f"gas L={size} e={restitution:g} gamma={damping:g} correlations={correlations}"
     chain = Chain(size=size, restitution=restitution, damping=damping)

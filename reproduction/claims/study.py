@@ -28,8 +28,6 @@ Results = Mapping[str, xr.Dataset]  # of the cases, by the same names
 #: By quality: the number of runs, and the settings that are those of this quality alone.
 Effort = Mapping[Quality, tuple[int, Mapping[str, Any]]]
 
-_FEWEST = 4  # runs that show their scatter
-
 
 def effort(quick: tuple[float, ...], full: tuple[float, ...]) -> Effort:
     """Return by quality the number of runs, their duration, and their warm-up unless left out."""
@@ -132,7 +130,7 @@ def error_of_mean(values: ArrayLike) -> Array:
     """
     values = np.asarray(values, dtype=float)
     number = len(values)
-    if number < _FEWEST:
+    if number < 4:
         return np.full(values.shape[1:], np.inf)
     factor = float(t.ppf(norm.cdf(1), number - 1))
     return np.asarray(factor * values.std(axis=0, ddof=1) / number**0.5)

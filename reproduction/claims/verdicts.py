@@ -93,9 +93,8 @@ class Claim:
     @property
     def details(self) -> dict[str, str]:
         """What there is to say about it, by what it is."""
-        low, high = self.within
-        of_the_paper = low != -high and math.isfinite(high)
-        limit = f" (limit {high:g})" if low == -high else ""
+        high, centre = self.within[1], sum(self.within) / 2
+        limit = f" (limit {high:g})" if centre == 0 else ""
         others = []
         for choice, number in self.elsewhere.items():
             told = _OUTCOMES.get(number.lies(self.within))
@@ -103,7 +102,7 @@ class Claim:
         texts = {
             "verdict": self.verdict,
             "in the paper": self.source,
-            "its number": f"{(low + high) / 2:g}" if of_the_paper else "",
+            "its number": f"{centre:g}" if centre and math.isfinite(centre) else "",
             "found here": self.words or f"{self.quantity} {self.number}{limit}".strip(),
             "our choice, not given in the paper": self.ours,
             "at other choices": "; ".join(others),

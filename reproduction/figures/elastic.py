@@ -115,7 +115,6 @@ _ARCTANH = 10.0  # the amplitude of the paper's arctanh fit, fig:atan
 # By amplitude. Displacements are compared to half a per cent (figure 16), densities to one of close
 # packing. Some seconds at either quality, because elastic rods are flown exactly.
 _DURATIONS = {1.0: 250_000, 3.0: 250_000, _ARCTANH: 1_000_000, 30.0: 250_000}
-_VISIBLE = 1e-3  # of close packing: where both densities are lower, nothing is drawn
 _RUNS = {
     amplitude: Runs(
         f"amplitude_{amplitude:g}",
@@ -193,33 +192,26 @@ ARCTANH = Study(
 def _match(results: Results, amplitude: float) -> Claim:
     """Compare the theory fed with the fitted displacement with the simulated density."""
     run = _run(results, amplitude)
-    fed = force_balance(chain_of(run), displacement=fit_arctanh(run))
-    run, theory = smooth(run), smooth(fed)
-    apart = deviation(run, theory)
+    theory = smooth(force_balance(chain_of(run), displacement=fit_arctanh(run)))
+    run = smooth(run)
+    apart, x, rho = deviation(run, theory), run.x.values, run.density.values
+    line = np.interp(x, theory.x.values, theory.density.values, left=0.0, right=0.0)
+    drawn = np.maximum(rho, line) > 1e-3 * chain_of(run).close_packed_density
+    height = (0.0, float(rho.max()))
+    distances = distances_in_plot(x[drawn], rho[drawn], x[drawn], line[drawn], y_range=height)
     known = ", which is that of fig:atan" if amplitude == _ARCTANH else ""
     return Claim(
         f"simulated and integrated densities match perfectly, A = {amplitude:g}",
         **in_plot(
             "rho(x) of simulation and theory, fed with the fitted displacement, both axes linear, "
             f"vertically up to {100 * apart.maximum:.2f} % of close packing apart",
-            _distance(run, theory),
+            furthest_in_plot(distances, run.density_error.values[drawn] / height[1]),
             apart.maximum_in_errors or 0.0,
         ),
         source="section seq:analytics, diff_gl, fig:rho_num_sim",
         ours=f"the amplitude{known}",
         reason="a real rod is spread around the place that the fluid gives it",
     )
-
-
-def _distance(run: xr.Dataset, theory: xr.Dataset) -> Estimate:
-    """Return the distance in the plot of rho(x) that decides, as a share of it."""
-    x, rho = run.x.values, run.density.values
-    line = np.interp(x, theory.x.values, theory.density.values, left=0.0, right=0.0)
-    least = _VISIBLE * chain_of(run).close_packed_density
-    drawn = (rho > least) | (line > least)
-    height = (0.0, float(rho.max()))
-    distances = distances_in_plot(x[drawn], rho[drawn], x[drawn], line[drawn], y_range=height)
-    return furthest_in_plot(distances, run.density_error.values[drawn] / height[1])
 
 
 DENSITY = Study(

@@ -78,8 +78,9 @@ def _singularity(run: xr.Dataset, beyond: float) -> tuple[float, float]:
     return fit.exponent, fit.time
 
 
-def _change(early: Estimate, late: Estimate) -> Estimate:
-    """Return the difference over the first one."""
+def _change(both: list[Estimate]) -> Estimate:
+    """Return the difference of two over the first one."""
+    early, late = both
     return late.minus(early).times(1 / early.value)
 
 
@@ -101,7 +102,7 @@ def _frequency_claim(results: Results) -> Claim:
         f"collisions of a contact per t_0: {early} from t = {begin:g} to {begin + _SPAN:g} t_0 and "
         f"{late} from {then:g} to {then + _SPAN:g} t_0, while the energy grows; the second less "
         "the first, over the first:",
-        **at_choices(steps, lambda frequencies: _change(*frequencies)),
+        **at_choices(steps, _change),
         within=around(0.0, 0.1),
         source="section Anti-Dissipation",
         ours="the spans of time",
@@ -116,23 +117,20 @@ def _growth_claim(results: Results) -> Claim:
         f"rate {early} per t_0 from E = {_GROWING:.0e} to t = {_HALF_WAY:g} t_0, and {late} from "
         f"there to {_LINEAR.settings['duration']:g} t_0; the second less the first, over the "
         "first:",
-        **at_choices(steps, lambda rates: _change(*rates)),
+        **at_choices(steps, _change),
         within=around(0.0, 0.1),
         source=_SOURCE,
     )
 
 
 def _singularity_claim(results: Results) -> Claim:
-    # By the energy from which on they are fitted: exponents and t_c.
+    # Exponents and t_c of fits from each of these energies on.
     steps = {
-        step: {
-            beyond: runs.estimates(results, partial(_singularity, beyond=beyond))
-            for beyond in _SINGULAR
-        }
+        step: [runs.estimates(results, partial(_singularity, beyond=each)) for each in _SINGULAR]
         for step, [runs] in _at_steps(_QUADRATIC).items()
     }
-    listed = ", ".join(f"{beyond:.0e}: {exponent}" for beyond, (exponent, _) in steps[""].items())
-    _, time = steps[""][_SINGULAR[0]]
+    exponents, (time, *_) = zip(*steps[""], strict=True)
+    listed = ", ".join(f"{e:.0e}: {found}" for e, found in zip(_SINGULAR, exponents, strict=True))
     diverged = [run.attrs["status"] == "diverged" for run in _QUADRATIC.members(results)]
     return Claim(
         "quadratic springs: divergence in finite time, a power law of t_c - t",
@@ -143,9 +141,9 @@ def _singularity_claim(results: Results) -> Claim:
     )
 
 
-def _middle(fits: dict[float, list[Estimate]]) -> Estimate:
+def _middle(fits: list[list[Estimate]]) -> Estimate:
     """Return the middle of the exponents; half their spread, where it begins, is an error too."""
-    exponents = [exponent for exponent, _ in fits.values()]
+    exponents = [exponent for exponent, _ in fits]
     low, high = min(exponents).value, max(exponents).value
     error = max(exponent.error for exponent in exponents)
     return Estimate((low + high) / 2, math.hypot((high - low) / 2, error))
@@ -164,12 +162,11 @@ def _draw(results: Results) -> Figure:
     left.semilogy(t, anchor * np.exp(rate * (t - 90)), "k--", label=label)
     left.set(xlabel="time $t$ [$t_0$]", ylabel=_ENERGY, xlim=(0, _HALF_WAY), ylim=(1, 1e8))
     left.legend()
-    look: Any = {"marker": ".", "markersize": 2, "color": COLOURS[1], "alpha": 0.6}
-    look["linestyle"] = "none"
+    look: Any = {"linestyle": "none", "marker": ".", "markersize": 2, "color": COLOURS[1]}
     for run in _QUADRATIC.members(results):
         until = _singularity(run, _SINGULAR[0])[1] - run.time.values
-        right.loglog(until[until > 0], run.kinetic_energy.values[until > 0], **look)
-    right.plot([], [], **look, label="quadratic springs")
+        right.loglog(until[until > 0], run.kinetic_energy.values[until > 0], **look, alpha=0.6)
+    right.plot([], [], **look, alpha=0.6, label="quadratic springs")
     span = np.array([0.6, 6.0])
     right.loglog(span, 3e7 * span**-6.0, "k--", label="slope $-6$")
     right.set(xlabel="time left $t_c - t$ [$t_0$]", ylabel=_ENERGY, ylim=(1, 1e12))

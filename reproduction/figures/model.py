@@ -27,31 +27,28 @@ def _draw(results: Results) -> Figure:
         ax.plot([anchor - 0.35, anchor + 0.35], [_CEILING] * 2, color=COLOURS[4], linewidth=2)
         ax.text(anchor, _CEILING + 0.5, rf"$x_{i}^0$", ha="center", color=COLOURS[4])
         ax.text(anchor + shift, 0, rf"$x_{i}$", ha="center", va="center")
-    _draw_length(ax, chain.anchors[1], chain.anchors[2], r"$2R + g$")
-    _draw_length(ax, chain.anchors[0] + _DISPLACEMENTS[0], chain.anchors[0], r"$\Delta x_1$")
-    shaken = chain.anchors[3] + _DISPLACEMENTS[3]
+    first, second, third, last = chain.anchors
+    for start, end, text in (
+        (second, third, r"$2R + g$"),
+        (first + _DISPLACEMENTS[0], first, r"$\Delta x_1$"),
+    ):
+        _draw_arrow(ax, start, end, -1.5, lw=0.9, shrinkA=0, shrinkB=0)
+        ax.text((start + end) / 2, -2.25, text, ha="center")
+    shaken = last + _DISPLACEMENTS[3]
     _draw_arrow(ax, shaken + 1.1, shaken + 2.3, 0, color=COLOURS[0])
     ax.text(shaken + 1.2, 0.5, r"$A\,\xi_4(t)$", color=COLOURS[0])
     ax.axhline(-chain.radius, color="0.6", linewidth=0.8, zorder=0)
-    ax.set(xlim=(chain.anchors[0] - 3, chain.anchors[-1] + 3.4), ylim=(-2.4, 4.1), aspect="equal")
+    ax.set(xlim=(first - 3, last + 3.4), ylim=(-2.4, 4.1), aspect="equal")
     ax.set_axis_off()
     return figure
 
 
 def _draw_spring(ax: Axes, anchor: float, centre: float) -> None:
-    """Draw a spring from its anchor, above, down to the rod."""
-    turns = 14
-    along = np.concatenate([[0, 0.15], np.linspace(0.15, 0.85, turns), [0.85, 1]])
-    inside = 0.2 * np.where(np.arange(turns) % 2, 1, -1)
-    zigzag = np.concatenate([[0, 0], inside, [0, 0]])
+    """Draw a spring of 14 turns from its anchor, above, down to the rod."""
+    along = np.concatenate([[0, 0.15], np.linspace(0.15, 0.85, 14), [0.85, 1]])
+    zigzag = np.concatenate([[0, 0], np.tile([-0.2, 0.2], 7), [0, 0]])
     x = anchor + (centre - anchor) * along + zigzag
     ax.plot(x, _CEILING - (_CEILING - 1) * along, color="0.35", linewidth=0.9)
-
-
-def _draw_length(ax: Axes, start: float, end: float, text: str) -> None:
-    height = -1.5
-    _draw_arrow(ax, start, end, height, lw=0.9, shrinkA=0, shrinkB=0)
-    ax.text((start + end) / 2, height - 0.75, text, ha="center")
 
 
 def _draw_arrow(ax: Axes, start: float, end: float, height: float, **look: Any) -> None:

@@ -31,9 +31,9 @@ _FREE = Chain().free_velocity_width
 _SIZES = (30, 100, 300, chains.LARGE)
 _STEPS = chains.inelastic_at_steps(_SIZES)
 _GAS = {size: chains.gas(size, 0.0) for size in _SIZES}
+_SOURCE = "section seq:e_0, eq:power_law, fig.2"
 _CROSS: dict[str, Any] = {"marker": "+", "linestyle": "none"}  # of the theory
 _NU, _PRECISION = -0.46, 0.005  # "nu ~ -0.46": half a unit of the last digit
-_SAME = 2 * _PRECISION  # two numbers that are both written -0.46 differ by less
 
 
 def _narrowing(runs: list[xr.Dataset]) -> Estimate:
@@ -48,15 +48,15 @@ def _difference_of_exponents(results: Results, group: Mapping[int, Runs]) -> dic
     exponents = {size: runs.estimate(results, nu) for size, runs in group.items()}
     pairs = itertools.combinations(exponents.values(), 2)
     listed = ", ".join(f"{size}: {exponent}" for size, exponent in exponents.items())
-    return worst(f"{listed}; difference of two", [a.minus(b) for a, b in pairs], _SAME)
+    # Two numbers that are both written -0.46 differ by less than twice the precision.
+    return worst(f"{listed}; difference of two", [a.minus(b) for a, b in pairs], 2 * _PRECISION)
 
 
 def _claims_along(results: Results) -> list[Claim]:
     profiles = {
         step: [runs.mean(results) for runs in group.values()] for step, group in _STEPS.items()
     }
-    claim = partial(Claim, ours="the sizes below 1000 and the time step")
-    source = "section seq:e_0, eq:power_law, fig.2"
+    claim = partial(Claim, source=_SOURCE, ours="the sizes below 1000 and the time step")
     return [
         claim(
             "collisions make every velocity distribution narrower than a free rod's",
@@ -67,13 +67,11 @@ def _claims_along(results: Results) -> list[Claim]:
         claim(
             "W_v(i) can be fitted by a sum of two power laws",
             **at_choices(profiles, partial(fits_in_plot, "four chains")),
-            source=source,
         ),
         *(_nu_claim(results, size) for size in _SIZES),
         claim(
             "the same exponent for all L",
             **at_choices(_STEPS, partial(_difference_of_exponents, results)),
-            source=source,
         ),
     ]
 
@@ -89,7 +87,7 @@ def _nu_claim(results: Results, size: int) -> Claim:
         f"nu = -0.46 at L = {size}",
         **numbers,
         within=around(_NU, _PRECISION),
-        source="section seq:e_0, eq:power_law, fig.2",
+        source=_SOURCE,
         ours="the time step, the weights" + (" and the size" if size < chains.LARGE else ""),
     )
 
@@ -99,8 +97,8 @@ def _draw_along(results: Results) -> Figure:
     widths.set(xscale="log", yscale="log")
     for number, (size, runs) in enumerate(_STEPS[chains.DEFAULT].items()):
         run, theory, colour = runs.mean(results), results[_GAS[size].name], COLOURS[number]
-        look: Any = {"number": number, "along": "particle", "label": f"$L = {size}$"}
-        draw_rods(widths, run, "velocity_width", unit=_FREE, **look)
+        look: Any = {"number": number, "label": f"$L = {size}$"}
+        draw_rods(widths, run, "velocity_width", unit=_FREE, along="particle", **look)
         i = np.geomspace(1, size, 200)
         widths.plot(i, fit_border_power_law(run)(i) / _FREE, color=colour)
         widths.plot(theory.particle, theory.velocity_width / _FREE, ":", color=colour, zorder=4)
@@ -120,8 +118,7 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
             (_time_step(results, group[size]), *group[size].estimate(results, nu))
             for group in _STEPS.values()
         )
-        look: Any = {"number": number, "linewidth": 0.8, "linestyle": "-"}
-        draw_points(ax, *np.transpose(exponents), **look)
+        draw_points(ax, *np.transpose(exponents), number=number, linewidth=0.8, linestyle="-")
         at = margin * 1.25 ** (number - 1.5)  # beside one another
         ax.plot(at, nu(results[_GAS[size].name]), **_CROSS, color=COLOURS[number])
     ax.axhline(_NU, color="0.4", linestyle="--", label="paper")
