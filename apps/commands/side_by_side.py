@@ -32,11 +32,11 @@ _COLUMNS = {
 }
 _CAPTION = (
     "How far theories are from the simulation. rho, smoothed as in the paper, in % of close "
-    "packing 1/(2R): largest difference, root mean square, and the largest in standard errors (se) "
-    "of the simulation; 3 to 4 is normal for the largest of many. W_v, theory minus simulation: "
-    "the largest of the particles 3 to L-2; the largest that the theory states (-: not measured "
-    "for chains like this one); of the middle tenth; of the first and the last; the largest of all "
-    "in standard errors."
+    "packing 1/(2R): largest vertical difference, root mean square, and the largest in standard "
+    "errors (se) of the simulation; 3 to 4 is normal for the largest of many. W_v, theory minus "
+    "simulation: the largest of the particles 3 to L-2; the largest that the theory states (-: not "
+    "measured for chains like this one); of the middle tenth; of the first and the last; the "
+    "largest of all in standard errors."
 )
 
 

@@ -74,7 +74,8 @@ def _claims_inelastic(results: Results) -> list[Claim]:
     skewness, border, centre = map(of_each, (_outward_skewness, border_width, central_width))
     peaks = of_each(lambda run: mean_shape(run, _BULK, "velocity_kurtosis"))
     ours = peaks.pop(chains.DEFAULT)
-    narrowing = {step: border[step].minus(centre[step]) for step in border}
+    unit = _INELASTIC[chains.DEFAULT].chain.free_velocity_width
+    narrowing = {step: border[step].minus(centre[step]).times(1 / unit) for step in border}
     claim = partial(Claim, source="section seq:e_0, fig.1")
     return [
         claim(
@@ -94,7 +95,7 @@ def _claims_inelastic(results: Results) -> list[Claim]:
         ),
         claim(
             "narrower inside than at the border",
-            "W_v(border) - W_v(centre) =",
+            "(W_v(border) - W_v(centre))/W =",
             **at_choices(narrowing, lambda one: one),
         ),
     ]
@@ -150,8 +151,8 @@ def _claims_weakly_damped(results: Results) -> list[Claim]:
         ),
         Claim(
             "large velocities are likelier at the border than in the centre",
-            "W_v(border) - W_v(centre) =",
-            **measured(lambda run: border_width(run) - central_width(run)),
+            "(W_v(border) - W_v(centre))/W =",
+            **measured(lambda run: (border_width(run) - central_width(run)) / unit),
             source=source,
         ),
         Claim(
@@ -167,12 +168,12 @@ def _claims_weakly_damped(results: Results) -> list[Claim]:
 
 def _claims_strongly_damped(results: Results) -> list[Claim]:
     def widening(run: xr.Dataset) -> float:
-        return central_width(run) - border_width(run)
+        return (central_width(run) - border_width(run)) / chain_of(run).free_velocity_width
 
     return [
         Claim(
             "large velocities are likelier in the centre than at the border",
-            "W_v(centre) - W_v(border) =",
+            "(W_v(centre) - W_v(border))/W =",
             **chains.at_steps(results, _FLIPPERS, _STRONG, widening),
             source="section Anti-Dissipation, fig:mom_hist_antidiss_gamma10",
         )

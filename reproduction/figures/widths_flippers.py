@@ -14,7 +14,7 @@ from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rod
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import central_width
-from crazybilliards.model import Chain
+from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array, middle_tenth
 from crazybilliards.reproduction import chains
 from crazybilliards.reproduction.claims.study import (
@@ -186,16 +186,19 @@ def _claims_by_length(results: Results) -> list[Claim]:
     def diverged(runs: Runs) -> list[bool]:
         return [run.attrs["status"] == "diverged" for run in runs.members(results)]
 
+    def centre(run: xr.Dataset) -> float:
+        return central_width(run) / chain_of(run).free_velocity_width
+
     claim = partial(Claim, source="section Anti-Dissipation, fig:antidiss_diff_L")
     measured = partial(chains.at_steps, results, _BY_LENGTH)
-    _, _, growth = chains.difference(results, _BY_LENGTH, (_LONG, _SHORT), central_width)
+    _, _, growth = chains.difference(results, _BY_LENGTH, (_LONG, _SHORT), centre)
     released = diverged(_DIVERGING)
     return [
         claim(f"concave at L = {_SHORT}", _CONCAVE, **measured(_SHORT, _concavity)),
         claim(f"convex at L = {_LONG}", _CONVEX, **measured(_LONG, bulge)),
         claim(
             "the longer the chain, the larger W_v",
-            f"W_v in the centre at L = {_LONG} less that at L = {_SHORT}:",
+            f"W_v/W in the centre at L = {_LONG} less that at L = {_SHORT}:",
             **growth,
         ),
         claim(
