@@ -3,8 +3,6 @@
 The paper's parameters throughout: gamma = k = A = 1, g = 0 unless said.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from typing import Any, TypeVar
 
@@ -18,10 +16,8 @@ LARGE = 1000  # the paper's longest chains
 SIZES = (10, 30, 100, 300, LARGE)
 RESTITUTIONS = (0.0, 0.5, 0.75, 0.85, 0.92, 0.95)
 
-# The time steps at which the perfectly inelastic chain runs, by their names. None: the default one.
 DEFAULT = "default step"
-STEPS = {DEFAULT: None, "dt = 0.01": 1e-2, "dt = 0.003": 3e-3, "dt = 0.001": 1e-3}
-# That at which the others run too, to see whether the step decides a claim.
+# Chains run at this one, too, to see whether the step decides a claim.
 OTHER_STEP, OTHER = 1e-2, "dt = 0.01"
 
 # By the number of rods from which on it holds. The longest chains have warm-ups of their own:
@@ -81,15 +77,15 @@ def dissipative(size: int, restitution: float, amplitude: float = 1.0) -> Runs:
     )
 
 
-def inelastic(size: int, step: float | None = None) -> Runs:
-    """Return runs of the perfectly inelastic chain at a time step; None: the default one."""
-    runs = dissipative(size, 0.0)
-    return runs if step is None else runs.at_step(step, _of_size(_AT_STEP, size))
-
-
-def inelastic_at_steps(sizes: Iterable[int]) -> dict[str, dict[int, Runs]]:
+def inelastic(sizes: Iterable[int]) -> dict[str, dict[int, Runs]]:
     """Return runs of these perfectly inelastic chains by the names of the steps."""
-    return {name: {size: inelastic(size, step) for size in sizes} for name, step in STEPS.items()}
+    ours = {size: dissipative(size, 0.0) for size in sizes}
+    return {DEFAULT: ours} | {
+        f"dt = {step:g}": {
+            size: runs.at_step(step, _of_size(_AT_STEP, size)) for size, runs in ours.items()
+        }
+        for step in (OTHER_STEP, 3e-3, 1e-3)
+    }
 
 
 def flippers(size: int, damping: float) -> Runs:
@@ -109,12 +105,13 @@ ELASTIC = Runs("L=100 e=1", Chain(size=100), effort((8, 50_000), (8, 50_000)), _
 def at_both_steps(runs: Mapping[Key, Runs]) -> dict[str, dict[Key, Runs]]:
     """Return the runs, of 1000 rods or of flippers, and such at the other step, by the steps."""
 
-    def again(one: Runs) -> Runs:
-        if one.chain == Chain(size=LARGE, restitution=0.0):
-            return inelastic(LARGE, OTHER_STEP)
-        return one.at_step(OTHER_STEP, _FLIPPERS_AGAIN if one.chain.restitution > 1 else _AGAIN)
+    def again(chain: Chain) -> Effort:
+        if chain == Chain(size=LARGE, restitution=0.0):
+            return _AT_STEP[LARGE]
+        return _FLIPPERS_AGAIN if chain.restitution > 1 else _AGAIN
 
-    return {DEFAULT: dict(runs), OTHER: {key: again(one) for key, one in runs.items()}}
+    others = {key: one.at_step(OTHER_STEP, again(one.chain)) for key, one in runs.items()}
+    return {DEFAULT: dict(runs), OTHER: others}
 
 
 def at_steps(results: Results, steps: Steps[Key], key: Key, quantity: Quantity) -> dict[str, Any]:

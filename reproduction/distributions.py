@@ -1,7 +1,5 @@
 """Distributions of velocities, as figures 2, 8, 10 and 11 fit and draw them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

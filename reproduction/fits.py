@@ -85,11 +85,9 @@ def fit_scaling(x: ArrayLike, y: ArrayLike, error: ArrayLike) -> Fit:
     if x.size < 2 or np.min([x, y, error]) <= 0:
         raise ValueError("a power law needs at least two points, positive, with positive errors")
 
-    def line(log_x: Array, intercept: float, slope: float) -> Array:
-        return np.asarray(intercept + slope * log_x)
-
+    points = np.log(x), np.log(y)
     (intercept, slope), covariance, quality = least_squares(
-        "power law", line, (np.log(x), np.log(y)), (0.0, 0.0), error / y
+        "power law", lambda log_x, a, b: a + b * log_x, points, (0.0, 0.0), error / y
     )
     scale, errors = float(np.exp(intercept)), np.sqrt(np.diag(covariance))
     of_errors = {"scale": scale * float(errors[0]), "exponent": float(errors[1])}

@@ -1,7 +1,5 @@
 """Profiles along the chain: mirror images, the shape of W_v(i), the paper's two power laws."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

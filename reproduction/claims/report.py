@@ -1,7 +1,5 @@
 """Studies carried out: pictures drawn from stored cases, claims checked, a page about all of it."""
 
-from __future__ import annotations
-
 import io
 import platform
 import re

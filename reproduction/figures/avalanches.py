@@ -1,7 +1,5 @@
 """Figures 6 and 13: sizes of avalanches, of the perfectly inelastic chain and of flippers."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -211,11 +209,7 @@ _FIRST_TEN = slice(1, 10)
 _SPANNING = 80  # collisions of a wave that began at one of those origins
 
 
-def _claims_flippers(results: Results) -> list[Claim]:
-    return [_spanning_claim(results, count, name) for count, (name, _) in _COUNTS.items()]
-
-
-def _spanning_claim(results: Results, count: str, name: str) -> Claim:
+def _spanning_claim(results: Results, count: str) -> Claim:
     def spanning(run: xr.Dataset) -> float:
         sizes, counts = _waves([run], count, _FIRST_TEN)
         return float(1e4 * counts[sizes >= _SPANNING].sum() / counts.sum())
@@ -223,7 +217,7 @@ def _spanning_claim(results: Results, count: str, name: str) -> Claim:
     weak, strong, numbers = chains.difference(results, _FLIPPERS, (4.0, 10.0), spanning)
     first = "; that the first hit must point right is ours" if count == "avalanche_count" else ""
     return Claim(
-        f"avalanches span the system more often at gamma = 4 than at 10 ({name})",
+        f"avalanches span the system more often at gamma = 4 than at 10 ({_COUNTS[count][0]})",
         f"of 10^4 waves with N_c >= 1, those of {_SPANNING} collisions or more: {weak} and "
         f"{strong}, difference",
         **numbers,
@@ -255,6 +249,6 @@ FLIPPERS = Study(
     "it. Grey: waves of 80 to 100 collisions, which span the system. Error bars: counting "
     "statistics.",
     needs=chains.all_of(_FLIPPERS),
-    claims=_claims_flippers,
+    claims=lambda results: [_spanning_claim(results, count) for count in _COUNTS],
     draw=_draw_flippers,
 )

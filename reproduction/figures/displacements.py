@@ -1,9 +1,7 @@
 """Figures 5 and 9: mean displacements of dissipative chains, by length and by restitution."""
 
-from __future__ import annotations
-
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -45,7 +43,7 @@ def _confinement(run: xr.Dataset) -> float:
 # -- figure 5: the perfectly inelastic chain, by its length -----------------------------------
 
 _SIZES = (30, 100, 300, chains.LARGE)
-_INELASTIC = chains.inelastic_at_steps(_SIZES)
+_INELASTIC = chains.inelastic(_SIZES)
 
 
 def _claims_by_length(results: Results) -> list[Claim]:
@@ -121,7 +119,7 @@ def _claims_by_restitution(results: Results) -> list[Claim]:
 def _power_law_claim(results: Results) -> Claim:
     """Decide whether power laws are visibly off in plots of <dx>, at every restitution."""
 
-    def least(law: Law, group: Mapping[float, Runs]) -> Estimate:
+    def least(law: Law, group: dict[float, Runs]) -> Estimate:
         distances = [_beyond_the_eye(runs.mean(results), law) for runs in group.values()]
         return min(distances, key=lambda distance: distance.value - 3 * distance.error)
 
@@ -173,7 +171,7 @@ def _energy_claims(results: Results) -> list[Claim]:
     """Decide whether rods at the border have more energy, and whether it is the potential one."""
     e = max(_RUNS)
 
-    def excess(group: Mapping[float, Runs], sign: int) -> Estimate:
+    def excess(group: dict[float, Runs], sign: int) -> Estimate:
         potential, kinetic = group[e].estimates(results, _excess)
         # Both are of the same rods: their errors add.
         return Estimate(potential.value + sign * kinetic.value, potential.error + kinetic.error)

@@ -1,7 +1,5 @@
 """Figures 8, 16 and 17: velocities, displacements and density of the elastic chain."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial

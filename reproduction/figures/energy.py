@@ -1,7 +1,5 @@
 """Figure 15: kinetic energy of flippers in time: exponential growth, finite-time singularity."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import partial
@@ -60,9 +58,8 @@ _NEEDS = (_at_steps(_LINEAR), _at_steps(_QUADRATIC), _at_steps(*_COUNTED))
 
 def _late(run: xr.Dataset, beyond: float) -> tuple[Array, Array]:
     """Return times and energies from the first one above ``beyond``."""
-    energy = run.kinetic_energy.values
-    begin = int(np.argmax(energy > beyond))
-    return run.time.values[begin:], energy[begin:]
+    late = run.isel(time=slice(int(np.argmax(run.kinetic_energy.values > beyond)), None))
+    return late.time.values, late.kinetic_energy.values
 
 
 def _rates(run: xr.Dataset) -> list[float]:
@@ -82,10 +79,6 @@ def _change(both: list[Estimate]) -> Estimate:
     """Return the difference of two over the first one."""
     early, late = both
     return late.minus(early).times(1 / early.value)
-
-
-def _claims(results: Results) -> list[Claim]:
-    return [_frequency_claim(results), _growth_claim(results), _singularity_claim(results)]
 
 
 def _frequency_claim(results: Results) -> Claim:
@@ -183,6 +176,8 @@ ENERGY = Study(
     "of every pair in half a period. (b) The runs with quadratic springs against the time left "
     "until their t_c, fitted from E = 1e5 on.",
     needs=[runs for steps in _NEEDS for both in steps.values() for runs in both],
-    claims=_claims,
+    claims=lambda results: [
+        claim(results) for claim in (_frequency_claim, _growth_claim, _singularity_claim)
+    ],
     draw=_draw,
 )

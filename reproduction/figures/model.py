@@ -1,7 +1,5 @@
 """Figure 1: the model."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

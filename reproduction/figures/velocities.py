@@ -1,7 +1,5 @@
 """Figures 2, 10 and 11: distributions of velocities at e = 0 and of flippers."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -38,7 +36,7 @@ def _draw(results: Results, runs: Runs, particles: Sequence[int]) -> Figure:
 
 _BULK = range(1, chains.LARGE + 1)[middle_tenth(chains.LARGE)]
 _WIDTHS_SHOWN = 5.0  # to either side in the plot of a distribution
-_INELASTIC = {name: chains.inelastic(chains.LARGE, step) for name, step in chains.STEPS.items()}
+_INELASTIC = {step: group[chains.LARGE] for step, group in chains.inelastic([chains.LARGE]).items()}
 
 
 def _misfit_of_gaussian(runs: Sequence[xr.Dataset]) -> float:

@@ -1,7 +1,5 @@
 """Figures 12 and 14: velocity widths of flippers, by their damping and by their number."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import partial
 

@@ -1,10 +1,7 @@
 """Figures 3 and 4: velocity widths of the perfectly inelastic chain, along it and by its length."""
 
-from __future__ import annotations
-
 import itertools
 import json
-from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
@@ -29,7 +26,7 @@ _FREE = Chain().free_velocity_width
 # -- figure 3: along the chain ----------------------------------------------------------------
 
 _SIZES = (30, 100, 300, chains.LARGE)
-_STEPS = chains.inelastic_at_steps(_SIZES)
+_STEPS = chains.inelastic(_SIZES)
 _GAS = {size: chains.gas(size, 0.0) for size in _SIZES}
 _SOURCE = "section seq:e_0, eq:power_law, fig.2"
 _CROSS: dict[str, Any] = {"marker": "+", "linestyle": "none"}  # of the theory
@@ -43,7 +40,7 @@ def _narrowing(runs: list[xr.Dataset]) -> Estimate:
     return Estimate(1 - float(rod.velocity_width) / _FREE, float(rod.velocity_width_error) / _FREE)
 
 
-def _difference_of_exponents(results: Results, group: Mapping[int, Runs]) -> dict[str, Any]:
+def _difference_of_exponents(results: Results, group: dict[int, Runs]) -> dict[str, Any]:
     """Return what decides whether the exponents of two chains differ."""
     exponents = {size: runs.estimate(results, nu) for size, runs in group.items()}
     pairs = itertools.combinations(exponents.values(), 2)
@@ -81,7 +78,7 @@ def _nu_claim(results: Results, size: int) -> Claim:
         return fit_border_power_law(run, weighted=True).exponent
 
     numbers = chains.at_steps(results, _STEPS, size, nu)
-    by_errors = chains.inelastic(size).estimate(results, weighted)
+    by_errors = _STEPS[chains.DEFAULT][size].estimate(results, weighted)
     numbers["elsewhere"]["rods weighed by their error bars"] = by_errors
     return Claim(
         f"nu = -0.46 at L = {size}",
@@ -149,7 +146,7 @@ ALONG = Study(
 # -- figure 4: the centre, by the length ------------------------------------------------------
 
 _EXPONENT = -0.38  # of the paper, of the same precision
-_ALL_STEPS = chains.inelastic_at_steps(chains.SIZES)
+_ALL_STEPS = chains.inelastic(chains.SIZES)
 # Beyond the paper: the default step would take hours there. The velocity kick of these steps is two
 # thirds of the central width at both sizes, so that their error leaves the exponent alone.
 _LONG = {
@@ -166,7 +163,7 @@ _LONG = {
 }
 
 
-def _central_widths(results: Results, group: Mapping[int, Runs]) -> dict[int, Estimate]:
+def _central_widths(results: Results, group: dict[int, Runs]) -> dict[int, Estimate]:
     return {size: runs.estimate(results, central_width) for size, runs in group.items()}
 
 

@@ -1,8 +1,5 @@
 """Figure 7: velocity widths for several restitutions, and the exponent against the restitution."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
@@ -30,11 +27,11 @@ _CROSSES: dict[str, dict[str, Any]] = {
 }
 
 
-def _exponents(results: Results, group: Mapping[float, Runs]) -> dict[float, Estimate]:
+def _exponents(results: Results, group: dict[float, Runs]) -> dict[float, Estimate]:
     return {e: runs.estimate(results, nu).times(-1) for e, runs in group.items()}
 
 
-def _exponential(exponents: Mapping[float, Estimate]) -> Fit:
+def _exponential(exponents: dict[float, Estimate]) -> Fit:
     return fit_exponential(list(exponents), *np.transpose(list(exponents.values())))
 
 
@@ -44,7 +41,7 @@ def _claims(results: Results) -> list[Claim]:
     claim = partial(Claim, ours="the restitutions (those of fig.5, and 0.5) and the time step")
     source = "section seq:e_larger, fig.4"
 
-    def fits(group: Mapping[float, Runs]) -> dict[str, Any]:
+    def fits(group: dict[float, Runs]) -> dict[str, Any]:
         return fits_in_plot("six restitutions", [runs.mean(results) for runs in group.values()])
 
     return [
@@ -70,7 +67,7 @@ def _claims(results: Results) -> list[Claim]:
     ]
 
 
-def _residuals(results: Results, group: Mapping[float, Runs]) -> dict[str, Any]:
+def _residuals(results: Results, group: dict[float, Runs]) -> dict[str, Any]:
     """Return what decides whether the exponents follow an exponential."""
     exponents = _exponents(results, group)
     fit = _exponential(exponents)
