@@ -96,11 +96,10 @@ def _draw_amplitude(results: Results) -> Figure:
     }
     for row, (e, group) in zip((axes[:2], axes[2:]), _BY_AMPLITUDE.items(), strict=True):
         row[0].set_yscale("log")
-        for number, (amplitude, runs) in enumerate(group.items()):
-            scaled = _scaled(runs.mean(results))
-            for ax, name in zip(row, labels, strict=True):
-                draw_rods(ax, scaled, name, number=number, label=f"$A = {amplitude:g}$")
-        for ax, label in zip(row, labels.values(), strict=True):
+        runs = {f"$A = {a:g}$": _scaled(runs.mean(results)) for a, runs in group.items()}
+        for ax, (name, label) in zip(row, labels.items(), strict=True):
+            for number, (amplitude, scaled) in enumerate(runs.items()):
+                draw_rods(ax, scaled, name, number=number, label=amplitude)
             along_the_chain(ax)
             ax.set_ylabel(label)
             entitle(ax, f"$e = {e:g}$")

@@ -1,6 +1,6 @@
 """Figures 12 and 14: velocity widths of flippers, by their damping and by their number."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -37,13 +37,8 @@ _CONVEX = "ln of the border's width over the centre's:"
 _CONCAVE = "ln of the centre's width over the border's:"
 
 
-def _figure(
-    results: Results, curves: Mapping[str, tuple[Runs, Solution, float]], ylabel: str
-) -> Figure:
-    """Return W_v(i) of runs as symbols and of the gas as lines, in one panel.
-
-    ``curves`` has by label the runs, the theory, and the unit of their widths.
-    """
+def _draw(results: Results, curves: dict[str, tuple[Runs, Solution, float]], ylabel: str) -> Figure:
+    """Draw W_v(i) by label: of runs as symbols, of the gas as lines, both in a unit."""
     figure, [ax] = panels(1, 1, height=3.1)
     for number, (label, (runs, theory, unit)) in enumerate(curves.items()):
         draw_rods(ax, runs.mean(results), "velocity_width", number=number, unit=unit, label=label)
@@ -121,7 +116,7 @@ def _power_law_claim(results: Results) -> Claim:
 
 
 def _beyond_the_eye(
-    results: Results, group: Mapping[float, Runs], axes: Callable[[Array], Array]
+    results: Results, group: dict[float, Runs], axes: Callable[[Array], Array]
 ) -> Estimate:
     """Return the distance from the fit that decides, as a share of the plot, less EYE."""
     profiles = {damping: runs.mean(results) for damping, runs in group.items()}
@@ -141,15 +136,6 @@ def _beyond_the_eye(
     return furthest.minus(Estimate(EYE, 0.0))
 
 
-def _draw_by_damping(results: Results) -> Figure:
-    unit = Chain().free_velocity_width  # at gamma = 1: A/sqrt(2 m)
-    curves = {
-        rf"$\gamma = {g:g}$": (runs, _DAMPED[g], unit / g)
-        for g, runs in _BY_DAMPING[chains.DEFAULT].items()
-    }
-    return _figure(results, curves, r"$\gamma W_v/(A/\sqrt{2m})$  [(M/$t_0$)$^{1/2}$]")
-
-
 BY_DAMPING = Study(
     number=12,
     name="widths-damping",
@@ -158,7 +144,15 @@ BY_DAMPING = Study(
     "1.05. Lines: the gas, in which colliding rods are independent.",
     needs=[*chains.all_of(_BY_DAMPING), *_DAMPED.values()],
     claims=_claims_by_damping,
-    draw=_draw_by_damping,
+    draw=partial(
+        _draw,
+        curves={
+            # In units of gamma W_v of a free rod at gamma = 1.
+            rf"$\gamma = {g:g}$": (runs, _DAMPED[g], Chain().free_velocity_width / g)
+            for g, runs in _BY_DAMPING[chains.DEFAULT].items()
+        },
+        ylabel=r"$\gamma W_v/(A/\sqrt{2m})$  [(M/$t_0$)$^{1/2}$]",
+    ),
 )
 
 # -- figure 14: by the length, concave, convex, then divergence -------------------------------
@@ -209,14 +203,6 @@ def _claims_by_length(results: Results) -> list[Claim]:
     ]
 
 
-def _draw_by_length(results: Results) -> Figure:
-    curves = {
-        f"$L = {size}$": (runs, _OF_LENGTH[size], runs.chain.free_velocity_width)
-        for size, runs in _BY_LENGTH[chains.DEFAULT].items()
-    }
-    return _figure(results, curves, "velocity width $W_v/W$")
-
-
 BY_LENGTH = Study(
     number=14,
     name="widths-size",
@@ -226,5 +212,12 @@ BY_LENGTH = Study(
     "diverges.",
     needs=[*chains.all_of(_BY_LENGTH), *_OF_LENGTH.values(), *_UNSTEADY.values()],
     claims=_claims_by_length,
-    draw=_draw_by_length,
+    draw=partial(
+        _draw,
+        curves={
+            f"$L = {size}$": (runs, _OF_LENGTH[size], runs.chain.free_velocity_width)
+            for size, runs in _BY_LENGTH[chains.DEFAULT].items()
+        },
+        ylabel="velocity width $W_v/W$",
+    ),
 )

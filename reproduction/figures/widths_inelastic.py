@@ -112,7 +112,7 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
     margin = 2e-4
     for number, size in enumerate(_SIZES):
         exponents = sorted(
-            (_time_step(results, group[size]), *group[size].estimate(results, nu))
+            (_time_step(group[size].members(results)[0]), *group[size].estimate(results, nu))
             for group in _STEPS.values()
         )
         draw_points(ax, *np.transpose(exponents), number=number, linewidth=0.8, linestyle="-")
@@ -126,9 +126,8 @@ def _draw_exponents(ax: Axes, results: Results) -> None:
     ax.set_xlim(0.5 * margin, 4e-2)
 
 
-def _time_step(results: Results, runs: Runs) -> float:
-    default = json.loads(runs.members(results)[0].attrs["provenance"])["schedule"]["time_step"]
-    return float(runs.settings.get("time_step", default))
+def _time_step(run: xr.Dataset) -> float:
+    return float(json.loads(run.attrs["provenance"])["schedule"]["time_step"])
 
 
 ALONG = Study(

@@ -27,12 +27,10 @@ _CROSSES: dict[str, dict[str, Any]] = {
 }
 
 
-def _exponents(results: Results, group: dict[float, Runs]) -> dict[float, Estimate]:
-    return {e: runs.estimate(results, nu).times(-1) for e, runs in group.items()}
-
-
-def _exponential(exponents: dict[float, Estimate]) -> Fit:
-    return fit_exponential(list(exponents), *np.transpose(list(exponents.values())))
+def _exponential(results: Results, group: dict[float, Runs]) -> tuple[dict[float, Estimate], Fit]:
+    """Return the exponents -nu by the restitution, and the exponential that fits them."""
+    exponents = {e: runs.estimate(results, nu).times(-1) for e, runs in group.items()}
+    return exponents, fit_exponential(list(exponents), *np.transpose(list(exponents.values())))
 
 
 def _claims(results: Results) -> list[Claim]:
@@ -69,8 +67,7 @@ def _claims(results: Results) -> list[Claim]:
 
 def _residuals(results: Results, group: dict[float, Runs]) -> dict[str, Any]:
     """Return what decides whether the exponents follow an exponential."""
-    exponents = _exponents(results, group)
-    fit = _exponential(exponents)
+    exponents, fit = _exponential(results, group)
     rate, amplitude, offset = (
         Estimate(fit.parameters[name], fit.errors[name]) for name in ("rate", "amplitude", "offset")
     )
@@ -94,7 +91,7 @@ def _draw(results: Results) -> Figure:
     exponents, centre = axes["exponents"], axes["centre"]
     exponents.sharex(centre)
     _draw_by_restitution(exponents, results, lambda result: -nu(result))
-    fit, fine = _exponential(_exponents(results, _RUNS)), np.linspace(0, 1, 101)
+    (_, fit), fine = _exponential(results, _RUNS), np.linspace(0, 1, 101)
     exponents.plot(fine, fit(fine), "0.4", label=rf"fit, $\lambda = {fit.rate:.1f}$")
     exponents.set(ylabel=r"exponent $-\nu$")
     exponents.tick_params(labelbottom=False)
