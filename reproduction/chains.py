@@ -81,9 +81,7 @@ def inelastic(sizes: Iterable[int]) -> dict[str, dict[int, Runs]]:
     """Return runs of these perfectly inelastic chains by the names of the steps."""
     ours = {size: dissipative(size, 0.0) for size in sizes}
     return {DEFAULT: ours} | {
-        f"dt = {step:g}": {
-            size: runs.at_step(step, _of_size(_AT_STEP, size)) for size, runs in ours.items()
-        }
+        f"dt = {step:g}": {n: runs.at_step(step, _of_size(_AT_STEP, n)) for n, runs in ours.items()}
         for step in (OTHER_STEP, 3e-3, 1e-3)
     }
 

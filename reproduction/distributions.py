@@ -13,7 +13,6 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.reproduction.claims.study import error_of_mean
 
 _SYMBOLS_DRAWN = 41
-_LEAST = 1e-5  # of the largest density: below, counts are too few to draw
 
 
 def mean_shape(run: xr.Dataset, particles: Sequence[int], name: str) -> float:
@@ -21,13 +20,11 @@ def mean_shape(run: xr.Dataset, particles: Sequence[int], name: str) -> float:
     return float(run[name].sel(particle=list(particles)).mean())
 
 
-def histogram(
-    runs: Sequence[xr.Dataset], particles: Sequence[int], reach: float
-) -> tuple[Array, Array]:
-    """Return velocities and the mean density of some particles in 41 equal bins to +-``reach``."""
+def histogram(runs: Sequence[xr.Dataset], rods: Sequence[int], reach: float) -> tuple[Array, Array]:
+    """Return velocities and the mean density of some rods in 41 equal bins to +-``reach``."""
     v = runs[0].velocity_bin.values
     weight = np.gradient(v)
-    density = np.mean([run.velocity_density.sel(particle=list(particles)) for run in runs], axis=0)
+    density = np.mean([run.velocity_density.sel(particle=list(rods)) for run in runs], axis=0)
     p = density.mean(axis=runs[0].velocity_density.get_axis_num("particle"))
     edges = np.linspace(-reach, reach, _SYMBOLS_DRAWN + 1)
     share, width, middle = (
@@ -40,10 +37,8 @@ def histogram(
 def distance_in_plot(v: Array, p: Array, line: Callable[[Array], Array], reach: float) -> float:
     """Return how far off a line the symbols are at most, in a plot to +-``reach`` from p = 0 up."""
     fine = np.linspace(-reach, reach, 4001)
-    height = (0.0, float(p.max()))
-    return float(
-        distances_in_plot(v, p, fine, line(fine), x_range=(-reach, reach), y_range=height).max()
-    )
+    ranges = {"x_range": (-reach, reach), "y_range": (0.0, float(p.max()))}
+    return float(distances_in_plot(v, p, fine, line(fine), **ranges).max())
 
 
 def gaussian(v: Array, width: float) -> Array:
@@ -61,7 +56,7 @@ def draw_distributions(ax: Axes, runs: Sequence[xr.Dataset], particles: Sequence
         densities = np.array([rod.velocity_density for rod in rods]) * unit
         p, error = densities.mean(axis=0), error_of_mean(densities)
         width = float(np.sqrt(np.mean([rod.velocity_width**2 for rod in rods]))) / unit
-        drawable = p > _LEAST * p.max()
+        drawable = p > 1e-5 * p.max()  # below, counts are too few
         reach = max(reach, float(np.abs(v[drawable]).max()))
         # Bins grow with v: draw those nearest to equally spaced velocities.
         first, last = v[drawable][[0, -1]]

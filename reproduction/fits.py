@@ -22,17 +22,15 @@ def fit_singularity(time: ArrayLike, energy: ArrayLike) -> Fit:
     its mean growth, so the scatter between independent runs is a better measure. A ValueError says
     that no such law fits: t_c of an exponential growth, say, is at infinity.
     """
-    t, log_energy = _logarithm(time, energy, least=5)
+    t, log_E = _logarithm(time, energy, least=5)
     last, span = float(t.max()), float(np.ptp(t))
 
     # t_c = last + span exp(q) lies behind the data for every q.
     def model(t: Array, intercept: float, exponent: float, q: float) -> Array:
         return np.asarray(intercept - exponent * np.log((last - t) / span + np.exp(q)))
 
-    start = (float(log_energy[0]), 3.0, -2.0)
-    values, covariance, quality = least_squares(
-        "finite-time singularity", model, (t, log_energy), start
-    )
+    start = (float(log_E[0]), 3.0, -2.0)
+    values, covariance, quality = least_squares("finite-time singularity", model, (t, log_E), start)
     intercept, exponent, q = map(float, values)
     log_scale = intercept + exponent * float(np.log(span))
     if not (-50 < q < 5 and exponent > 0 and abs(log_scale) < 700):  # exp overflows beyond

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import math
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -100,7 +99,8 @@ def percents(values: Iterable[float], errors: Iterable[float]) -> list[str]:
     return [f"{d:+.2f} ± {s:.2f}" for d, s in zip(values, errors, strict=True)]
 
 
-def damped(size: int, restitution: float, damping: float) -> Chain:
-    """Return a chain with this Gamma = gamma/sqrt(k m)."""
-    chain = Chain(size=size, restitution=restitution)
-    return chain.replace(damping=damping * math.sqrt(chain.stiffness * chain.mass))
+def damped(chain: Chain, damping: float) -> Chain:
+    """Return a chain with this Gamma = gamma s/(m W), a power of gamma: W and s depend on it."""
+    own = chain.damping * chain.thermal_length / (chain.mass * chain.free_velocity_width)
+    power = 1.5 - 1 / chain.potential_exponent
+    return chain.replace(damping=chain.damping * (damping / own) ** (1 / power))

@@ -160,10 +160,8 @@ def tables(results: Results) -> dict[str, Table]:
         run = runs[e, size]
         length, shared = correlation_length(run), covariance(run)
         together = chain_of(run).free_velocity_width ** 2 / float((run.velocity_width**2).mean())
-        lengths = [
-            f"{length.value:.1f} ± {length.error:.1f}",
-            f"{correlation_length(theory).value:.1f}",
-        ]
+        expected = f"{correlation_length(theory).value:.1f}"
+        lengths = [f"{length.value:.1f} ± {length.error:.1f}", expected]
         shares = [f"{shared.value:.3f} ± {shared.error:.3f}", f"{covariance(theory).value:.3f}"]
         rows.append([f"{e:g}", f"{size}", *lengths, *shares, f"{together:.2f}"])
     sticky, sticky_theories = (

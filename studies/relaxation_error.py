@@ -19,7 +19,7 @@ import xarray as xr
 from crazybilliards.kinetic import compressed, displaced, equilibrium_states, hydrodynamics
 from crazybilliards.model import Chain, load, save
 from crazybilliards.particles import simulate
-from studies.common import Table, options, print_table
+from studies.common import Table, damped, options, print_table
 
 Interval = tuple[float, float]
 
@@ -39,11 +39,7 @@ class Place(NamedTuple):
     spring: Literal["linear", "quadratic"] = "linear"
 
     def chain(self) -> Chain:
-        chain = Chain(size=self.L, restitution=self.e, spring=self.spring)
-        s, n = chain.thermal_length, chain.potential_exponent
-        unit = chain.damping * s / (chain.mass * chain.free_velocity_width)
-        # s/W depends on the damping through the temperature.
-        chain = chain.replace(damping=(self.Gamma / unit) ** (1 / (1.5 - 1 / n)))
+        chain = damped(Chain(size=self.L, restitution=self.e, spring=self.spring), self.Gamma)
         return chain.replace(gap=self.gap * chain.thermal_length)
 
 

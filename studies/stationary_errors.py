@@ -30,7 +30,7 @@ from crazybilliards.kinetic.accuracy import kind_and_place
 from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.particles.scales import centre_width, correlation_time, default_time_step
 from crazybilliards.particles.step_error import time_step_error
-from studies.common import Table, options, print_table
+from studies.common import Table, damped, options, print_table
 
 # Relative accuracy of W_v in the centre, by size.
 ACCURACY = {10: 0.005, 30: 0.005, 100: 0.008, 300: 0.014, 1000: 0.03}
@@ -50,11 +50,7 @@ def on_springs(
     spring: Literal["linear", "quadratic"] = "linear",
 ) -> cb.Chain:
     """Return a chain with Gamma, s/R, and in units of s the gap and the room of a box."""
-    chain = cb.Chain(size=size, restitution=e, spring=spring)
-    # W and s depend on gamma themselves: Gamma is a power of it.
-    power = 1.0 if spring == "linear" else 7 / 6
-    own = chain.damping * chain.thermal_length / (chain.mass * chain.free_velocity_width)
-    chain = chain.replace(damping=chain.damping * (damping / own) ** (1 / power))
+    chain = damped(cb.Chain(size=size, restitution=e, spring=spring), damping)
     s = chain.thermal_length
     chain = chain.replace(radius=s / length, gap=gap * s)
     return chain.replace(box=2 * chain.radius * size + room * s) if room else chain
@@ -231,10 +227,8 @@ def row(folder: Path, chain: cb.Chain) -> list[object]:
 def beyond(folder: Path, chain: cb.Chain) -> list[object]:
     """Return a chain that was drawn at random, and each error beside the stated one."""
     kind, place = kind_and_place(chain)
-    stated, found = (
-        accuracy.expected("steady_state", chain)._asdict(),
-        errors(simulated(folder, chain)),
-    )
+    stated = accuracy.expected("steady_state", chain)._asdict()
+    found = errors(simulated(folder, chain))
     cells = (
         f"{found[q][0]:.4f} ± {found[q][1]:.4f} of {stated[q]:.4f}" if q in found else ""
         for q in QUANTITIES
@@ -244,15 +238,8 @@ def beyond(folder: Path, chain: cb.Chain) -> list[object]:
 
 
 def table(folder: Path, drawn: bool) -> Table:
-    yield (
-        "kind",
-        "L",
-        "e",
-        "Gamma",
-        "x",
-        *QUANTITIES,
-        *(["beyond, standard errors"] if drawn else []),
-    )
+    last = ["beyond, standard errors"] if drawn else []
+    yield "kind", "L", "e", "Gamma", "x", *QUANTITIES, *last
     with process_pool() as workers:
         chains = list(held_out() if drawn else measured())
         lines = workers.map(partial(beyond if drawn else row, folder), chains)

@@ -118,9 +118,7 @@ def markdown(reproductions: Sequence[Reproduction], quality: Quality) -> str:
 
 def _counts(claims: Iterable[Claim]) -> str:
     counts = Counter(claim.verdict for claim in claims)
-    return ", ".join(
-        f"{counts[verdict]} {verdict}" for verdict in get_args(Verdict) if counts[verdict]
-    )
+    return ", ".join(f"{counts[name]} {name}" for name in get_args(Verdict) if counts[name])
 
 
 def _plain(text: str) -> str:

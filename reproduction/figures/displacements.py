@@ -55,13 +55,11 @@ def _claims_by_length(results: Results) -> list[Claim]:
             (_swelling, "slope of <dx>/s against i_n", shrinks, "fig.3_2"),
             (_confinement, "W_x/s in the centre, middle tenth", narrows, "fig.3_2, inset"),
         ):
-            first, second, numbers = chains.difference(
-                results, _INELASTIC, (small, large), quantity
-            )
+            first, second, about = chains.difference(results, _INELASTIC, (small, large), quantity)
             claim = Claim(
                 statement,
                 f"{name}: {first} less {second}, difference",
-                **numbers,
+                **about,
                 source=f"section seq:e_0, {source}",
                 ours="the sizes and the time step",
             )

@@ -50,9 +50,7 @@ def _difference_of_exponents(results: Results, group: dict[int, Runs]) -> dict[s
 
 
 def _claims_along(results: Results) -> list[Claim]:
-    profiles = {
-        step: [runs.mean(results) for runs in group.values()] for step, group in _STEPS.items()
-    }
+    profiles = {dt: [one.mean(results) for one in group.values()] for dt, group in _STEPS.items()}
     claim = partial(Claim, source=_SOURCE, ours="the sizes below 1000 and the time step")
     return [
         claim(
