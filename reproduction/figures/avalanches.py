@@ -38,20 +38,19 @@ def _draw_sizes(ax: Axes, sizes: Array, p: Array, counts: Array, number: int, la
 
 # -- figure 6: the perfectly inelastic chain, by origin ---------------------------------------
 
-_STEPS = (1e-1, 2.3e-2, 1e-2, 1e-3)
-_BETWEEN, _MIDDLE = _STEPS[1:3]
-_EFFORT = effort((4, 40, 30), (4, 200, 60))
+_MIDDLE = 1e-2
+_EFFORTS = dict.fromkeys((1e-1, 2.3e-2, _MIDDLE, 1e-3), effort((4, 40, 30), (4, 200, 60)))
 # At this step, found by trial, pushes have the paper's exponent. So many runs show that, at full
 # quality, both counts have it for some sizes, and at quick quality that one has.
-_LONGER = effort((4, 1000, 60), (8, 1500, 60))
+_EFFORTS[2.3e-2] = effort((4, 1000, 60), (8, 1500, 60))
 _RUNS = {
     step: Runs(
         f"dt={step:g}",
         Chain(size=chains.LARGE, restitution=0.0),
-        _LONGER if step == _BETWEEN else _EFFORT,
+        runs,
         {"time_step": step, "observe": ["avalanches", "triggered-collisions"]},
     )
-    for step in _STEPS
+    for step, runs in _EFFORTS.items()
 }
 _ORIGINS = {"centre": slice(451, 550), "quarter": slice(201, 300), "border": slice(51, 150)}
 _EXPONENT, _PRECISION = -2.2, 0.05  # "around -2.2": half a unit of the last digit
@@ -62,12 +61,10 @@ _SOURCE = "section seq:e_0, fig:trigger"
 _OURS = "the time step, the sizes fitted, and what counts as a collision among rods in contact"
 
 
-def _exponent(
-    results: Results, origin: str, step: float, count: str, smallest: int, largest: int
-) -> Estimate:
+def _exponent(results: Results, origin: str, step: float, count: str, *sizes: int) -> Estimate:
     def exponent(run: xr.Dataset) -> float:
         _, counts = _waves([run], count, _ORIGINS[origin])
-        return -fit_avalanches(counts, smallest=smallest, largest=largest).exponent
+        return -fit_avalanches(counts, smallest=sizes[0], largest=sizes[1]).exponent
 
     return _RUNS[step].estimate(results, exponent)
 
@@ -80,7 +77,7 @@ def _claims_inelastic(results: Results) -> list[Claim]:
                 results, "centre", step, count, low, high
             )
             for low, high in each
-            for step in sorted(_STEPS, key=lambda step: step != _MIDDLE)
+            for step in sorted(_RUNS, key=lambda step: step != _MIDDLE)
         }
         for count, each in _SIZES.items()
     }
@@ -124,7 +121,7 @@ def _same_slope_claim(results: Results) -> Claim:
         )
         return centre.minus(border)
 
-    choices = {f"{_COUNTS[c][0]} at dt = {s:g}": (c, s) for c in _SIZES for s in _STEPS}
+    choices = {f"{_COUNTS[c][0]} at dt = {s:g}": (c, s) for c in _SIZES for s in _RUNS}
     ours = f"pushes at dt = {_MIDDLE:g}"
     choices = {ours: choices.pop(ours)} | choices
     return Claim(

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -160,8 +159,7 @@ def _draw_displacement(results: Results) -> Figure:
     measured, error = run.mean_displacement.values / s, run.mean_displacement_error.values / s
     exact, fitted = equilibrium(chain_of(run)).mean_displacement.values / s, fit_arctanh(run)(x) / s
     figure, (top, bottom) = panels(2, 1, height=1.7, sharex=True, height_ratios=(2, 1))
-    look: Any = {"color": "black", "linewidth": 0.7, "label": "simulation"}
-    draw_points(top, x, measured, error, number=0, **look)
+    draw_points(top, x, measured, error, number=0, color="black", linewidth=0.7, label="simulation")
     for label, curve, style in (("exact", exact, "C1-"), ("arctanh fit", fitted, "C0--")):
         top.plot(x, curve, style, label=label)
         bottom.plot(x, curve - measured, style)

@@ -41,7 +41,6 @@ def _narrowing(runs: list[xr.Dataset]) -> Estimate:
 
 
 def _difference_of_exponents(results: Results, group: dict[int, Runs]) -> dict[str, Any]:
-    """Return what decides whether the exponents of two chains differ."""
     exponents = {size: runs.estimate(results, nu) for size, runs in group.items()}
     pairs = itertools.combinations(exponents.values(), 2)
     listed = ", ".join(f"{size}: {exponent}" for size, exponent in exponents.items())

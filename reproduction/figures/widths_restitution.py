@@ -66,7 +66,6 @@ def _claims(results: Results) -> list[Claim]:
 
 
 def _residuals(results: Results, group: dict[float, Runs]) -> dict[str, Any]:
-    """Return what decides whether the exponents follow an exponential."""
     exponents, fit = _exponential(results, group)
     rate, amplitude, offset = (
         Estimate(fit.parameters[name], fit.errors[name]) for name in ("rate", "amplitude", "offset")

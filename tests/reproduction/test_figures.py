@@ -3,10 +3,8 @@
 Right numbers are the business of ``crazybilliards reproduce``; here nothing may break on the way.
 """
 
-import itertools
 import json
 from functools import cache
-from types import MappingProxyType
 from typing import get_args
 
 import numpy as np
@@ -130,10 +128,10 @@ def test_a_step_decides_whether_avalanches_have_a_mean():
 # -- figure 15: where a fit begins ------------------------------------------------------------
 
 
-def claims_of_energy(late_rate, singular, rates=MappingProxyType({"100": 0.4, "250": 0.4})):
-    """Return the claims, for a growth rate beyond t = 150 and an energy by the time left.
+def claims_of_energy(late_rate, singular, rates=(0.4, 0.4)):
+    """Return the claims for a growth rate beyond t = 150, an energy by the time left, and rates.
 
-    ``rates`` are those of collisions by when their count begins.
+    These are those of collisions, counted from 100 and from 250 on.
     """
 
     def energies(time, energy, status):
@@ -148,8 +146,9 @@ def claims_of_energy(late_rate, singular, rates=MappingProxyType({"100": 0.4, "2
     for k in range(4):
         growing = 1e3 * np.exp((1 + 1e-4 * k) * log_energy)
         ending = np.exp(1e-3 * k) * singular(40.05 - quadratic)
-        for step, begin in itertools.product(("", " dt=0.005"), ("100", "250")):
-            results[f"collisions from {begin}{step}/{k}"] = collisions(rates[begin])
+        for step in ("", " dt=0.005"):
+            for begin, rate in zip((100, 250), rates, strict=True):
+                results[f"collisions from {begin}{step}/{k}"] = collisions(rate)
             results[f"linear{step}/{k}"] = energies(linear, growing, "completed")
         for step in ("", " dt=0.0005"):
             results[f"quadratic{step}/{k}"] = energies(quadratic, ending, "diverged")
@@ -168,7 +167,7 @@ def test_the_growth_rate_is_given_early_and_late():
 
 @pytest.mark.parametrize(("late", "verdict"), [(0.41, "reproduced"), (0.5, "not reproduced")])
 def test_a_collision_frequency_that_changes_is_not_constant(late, verdict):
-    frequency, *_ = claims_of_energy(0.06, lambda left: 1e6 * left**-5.0, {"100": 0.4, "250": late})
+    frequency, *_ = claims_of_energy(0.06, lambda left: 1e6 * left**-5.0, (0.4, late))
     assert frequency.number.value == pytest.approx(late / 0.4 - 1)
     assert frequency.verdict == verdict
 
