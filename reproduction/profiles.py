@@ -12,25 +12,21 @@ from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import chain_of
 from crazybilliards.reproduction.claims.verdicts import furthest_in_plot, in_plot
 
-_SIGNS = {"velocity_width": 1, "displacement_width": 1, "mean_displacement": -1}
-# Of the chain: rods closer to their mirror image than this are not taken as independent. It is
-# twice the length over which velocities of rods are correlated at e = 0.
-_CLOSE = 0.25
-
 
 def mirrored(run: xr.Dataset) -> xr.Dataset:
     """Return the result with both widths and <dx> averaged over mirror images, with their errors.
 
-    The mean of two independent rods has half the variance of one. Rods near the centre move with
-    their mirror image: their errors become no smaller.
+    The mean of two independent rods has half the variance of one. Rods that are less than a quarter
+    of the chain from their mirror image, twice the length over which velocities are correlated at
+    e = 0, move with it: their errors become no smaller.
     """
     size = run.sizes["particle"]
-    apart = np.abs(2 * run.particle.values - (size + 1)) > _CLOSE * size
+    apart = np.abs(2 * run.particle.values - (size + 1)) > size / 4
     values = {}
-    for name, sign in _SIGNS.items():
+    for name in ("velocity_width", "displacement_width", "mean_displacement"):
         own, error = run[name].values, run[f"{name}_error"].values
         image, image_error = own[::-1], error[::-1]
-        mean = np.sqrt((own**2 + image**2) / 2) if sign > 0 else (own - image) / 2
+        mean = np.sqrt((own**2 + image**2) / 2) if "width" in name else (own - image) / 2
         both = np.where(apart, np.hypot(error, image_error), error + image_error) / 2
         values[name] = run[name].copy(data=mean)
         values[f"{name}_error"] = run[f"{name}_error"].copy(data=both)

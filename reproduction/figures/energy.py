@@ -37,8 +37,7 @@ def _from_rest(chain: Chain, duration: float, time_step: float) -> Runs:
 def _at_steps(*runs: Runs) -> dict[str, tuple[Runs, ...]]:
     """Return runs of one time step, and those at a quarter of it, by the names of the steps."""
     step = runs[0].settings["time_step"] / 4
-    again = tuple(one.at_step(step, _FEW) for one in runs)
-    return {"": runs, f"dt = {step:g}": again}
+    return {"": runs, f"dt = {step:g}": tuple(one.at_step(step, _FEW) for one in runs)}
 
 
 _LINEAR = _from_rest(Chain(size=100, restitution=1.01, damping=0.4), 300.0, 0.02)

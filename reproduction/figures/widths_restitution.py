@@ -20,7 +20,6 @@ from crazybilliards.reproduction.profiles import bulge, fits_in_plot, nu
 _RUNS = {e: chains.dissipative(chains.LARGE, e) for e in chains.RESTITUTIONS}
 _STEPS = chains.at_both_steps(_RUNS)
 _UNIT = chains.ELASTIC.chain.free_velocity_width
-_PRECISION = 0.005  # of exponents: the paper gives them with two decimals
 _CROSSES: dict[str, dict[str, Any]] = {
     chains.MEAN_FIELD: {"marker": "x", "linestyle": "none", "color": COLOURS[4]},
     chains.GAS: {"marker": "+", "linestyle": "none", "color": COLOURS[2]},
@@ -75,7 +74,7 @@ def _residuals(results: Results, group: dict[float, Runs]) -> dict[str, Any]:
         f"with an amplitude a before it lambda = {rate}, a = {amplitude}, d = {offset}; -nu by e: "
         f"{listed}; -nu less the curve",
         [Estimate(value - float(fit(e)), error) for e, (value, error) in exponents.items()],
-        _PRECISION,
+        0.005,  # the paper gives exponents with two decimals
     )
 
 
