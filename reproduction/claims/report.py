@@ -64,7 +64,8 @@ def reproduce(
         with house_style():
             figure = study.draw(results)
             pictures = {kind: _file(figure, kind) for kind in ("png", *formats)}
-        yield Reproduction(study, pictures, study.claims(results), describe(cases.values()))
+        claims = study.claims(results) if study.claims else []
+        yield Reproduction(study, pictures, claims, describe(cases.values()))
 
 
 def _file(figure: Figure, kind: str) -> bytes:
@@ -104,10 +105,10 @@ def markdown(reproductions: Sequence[Reproduction], quality: Quality) -> str:
     parts: list[str] = []
     for reproduction in reproductions:
         study = reproduction.study
-        heading = f"{study.number}. {study.title}"
-        anchor = re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")  # as Markdown names it
-        rows.append(f"| [{heading}](#{anchor}) | {_counts(reproduction.claims)} |")
-        parts += ["", f"## {heading}", "", f"![{study.title}]({study.stem}.png)", "", study.caption]
+        anchor = re.sub(r"[^\w -]", "", study.heading.lower()).replace(" ", "-")  # of Markdown
+        rows.append(f"| [{study.heading}](#{anchor}) | {_counts(reproduction.claims)} |")
+        parts += ["", f"## {study.heading}", ""]
+        parts += [f"![{study.title}]({study.stem}.png)", "", study.caption]
         if reproduction.parameters:
             parts += ["", f"Computed: {_plain('; '.join(reproduction.parameters))}."]
         for claim in reproduction.claims:

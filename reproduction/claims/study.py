@@ -109,11 +109,16 @@ class Study:
     caption: str  #: what a reader needs to understand the picture
     needs: Sequence[Runs | Solution] = ()  #: the simulations and theories
     draw: Callable[[Results], Figure]  #: the picture, from the results of all cases by their names
-    claims: Callable[[Results], list[Claim]] = lambda results: []  #: beside what was found
+    claims: Callable[[Results], list[Claim]] | None = None  #: beside what was found
 
     def cases(self, quality: Quality) -> dict[str, Case]:
         """Return the cases of all that it needs, by their names."""
         return {name: case for need in self.needs for name, case in need.cases(quality).items()}
+
+    @property
+    def heading(self) -> str:
+        """The heading of its part of the page."""
+        return f"{self.number}. {self.title}"
 
     @property
     def stem(self) -> str:

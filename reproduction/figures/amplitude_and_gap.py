@@ -96,10 +96,10 @@ def _draw_amplitude(results: Results) -> Figure:
     }
     for row, (e, group) in zip((axes[:2], axes[2:]), _BY_AMPLITUDE.items(), strict=True):
         row[0].set_yscale("log")
-        runs = {f"$A = {a:g}$": _scaled(runs.mean(results)) for a, runs in group.items()}
+        scaled = {f"$A = {a:g}$": _scaled(runs.mean(results)) for a, runs in group.items()}
         for ax, (name, label) in zip(row, labels.items(), strict=True):
-            for number, (amplitude, scaled) in enumerate(runs.items()):
-                draw_rods(ax, scaled, name, number=number, label=amplitude)
+            for number, (amplitude, run) in enumerate(scaled.items()):
+                draw_rods(ax, run, name, number=number, label=amplitude)
             along_the_chain(ax)
             ax.set_ylabel(label)
             entitle(ax, f"$e = {e:g}$")

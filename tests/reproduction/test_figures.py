@@ -55,7 +55,7 @@ def short_run(case):
 @pytest.mark.parametrize("study", FIGURES, ids=lambda study: study.name)
 def test_it_is_drawn_and_every_claim_gets_a_verdict(study):
     results = {name: short_run(case) for name, case in study.cases("quick").items()}
-    for claim in study.claims(results):
+    for claim in study.claims(results) if study.claims else ():
         assert claim.verdict in get_args(Verdict)
         assert claim.statement
         if study.name not in STEP_LESS:
