@@ -3,7 +3,7 @@
 The paper's parameters throughout: gamma = k = A = 1, g = 0 unless said.
 """
 
-from collections.abc import Callable, Hashable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
 
 import xarray as xr
@@ -42,7 +42,7 @@ _AGAIN = effort((4, 40, 20), (4, 200, 50))
 _FLIPPERS_AGAIN = effort((4, 300), (4, 1500))
 
 Quantity = Callable[[xr.Dataset], float]
-Key = TypeVar("Key", bound=Hashable)
+Key = TypeVar("Key")
 Need = TypeVar("Need", Runs, Solution)
 Steps = Mapping[str, Mapping[Key, Runs]]  # by the names of time steps, the first the default one
 _OBSERVED = {"observe": ["widths", "velocities"]}

@@ -110,9 +110,8 @@ def fit_exponential(restitution: ArrayLike, y: ArrayLike, error: ArrayLike) -> F
     lowest = float(y[e.argmin()])
     start = (float(y[e.argmax()]) - lowest, 5.0, lowest)
     values, covariance, quality = least_squares("exponential", _saturating, (e, y), start, error)
-    names = ("amplitude", "rate", "offset")
     parameters, errors = (
-        dict(zip(names, map(float, numbers), strict=True))
+        dict(zip(("amplitude", "rate", "offset"), map(float, numbers), strict=True))
         for numbers in (values, np.sqrt(np.diag(covariance)))
     )
     return Fit(parameters, errors, _saturating, quality)

@@ -10,7 +10,8 @@ from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import chain_of
-from crazybilliards.reproduction.claims.verdicts import furthest_in_plot, in_plot
+from crazybilliards.model.arrays import Array
+from crazybilliards.reproduction.claims.verdicts import EYE, Estimate, furthest_in_plot, in_plot
 
 
 def mirrored(run: xr.Dataset) -> xr.Dataset:
@@ -41,6 +42,11 @@ def bulge(run: xr.Dataset) -> float:
 def nu(run: xr.Dataset) -> float:
     """Return the exponent of the two power laws."""
     return fit_border_power_law(run).exponent
+
+
+def beyond_the_eye(distances: Array, errors: Array) -> Estimate:
+    """Return the distance in a plot that decides, as a share of the plotted range, less EYE."""
+    return furthest_in_plot(distances, errors).minus(Estimate(EYE, 0.0))
 
 
 def fits_in_plot(of_what: str, runs: Iterable[xr.Dataset]) -> dict[str, Any]:

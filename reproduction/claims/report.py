@@ -4,7 +4,7 @@ import io
 import platform
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from html import escape
@@ -47,12 +47,9 @@ def all_cases(studies: Iterable[Study], quality: Quality) -> list[Case]:
 
 
 def reproduce(
-    studies: Iterable[Study], quality: Quality, folder: Path, *, formats: Sequence[str] = ()
+    studies: Iterable[Study], quality: Quality, folder: Path, *, formats: Collection[str] = ()
 ) -> Iterator[Reproduction]:
-    """Draw studies and check their claims, in their order, from the cases in ``folder``.
-
-    ``formats``: file formats of matplotlib, besides PNG.
-    """
+    """Draw studies, as PNG and ``formats``, check their claims, from the cases in ``folder``."""
 
     @cache  # many studies share cases
     def result(case: Case) -> xr.Dataset:

@@ -41,10 +41,7 @@ ANALYTICS = tuple(FIGURES[number - 1] for number in (8, 16, 17))
 
 
 def find_figures(which: str) -> list[Study]:
-    """Return what numbers, names, ``all`` or ``analytics`` stand for, or raise a ValueError.
-
-    Several are separated by commas; each figure is returned once.
-    """
+    """Return, each once, what numbers, names, ``all`` or ``analytics``, with commas, stand for."""
     known = {"all": FIGURES, "analytics": ANALYTICS}
     known |= {key: (figure,) for figure in FIGURES for key in (str(figure.number), figure.name)}
     figures: dict[Study, None] = {}

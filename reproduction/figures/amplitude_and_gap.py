@@ -14,14 +14,7 @@ from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction import chains
 from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort
-from crazybilliards.reproduction.claims.verdicts import (
-    EYE,
-    Claim,
-    Estimate,
-    around,
-    at_choices,
-    worst,
-)
+from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, at_choices, worst
 from crazybilliards.reproduction.profiles import mirrored
 
 # -- figure 18: the amplitude only sets the scale ---------------------------------------------
@@ -177,7 +170,7 @@ def _plateau_claim(results: Results, e: float, gap: float) -> Claim:
     statement = f"no plateau without a gap, e = {e:g}"
     if gap > 0:
         statement = f"plateau in the interior, e = {e:g}, g = {gap:g}"
-        about["within"] = around(0.0, _FLAT)
+        about["within"] = (-_FLAT, _FLAT)
         about["reason"] = "the gap is too small for the interior to become homogeneous"
     return _claim(statement, "ln of W_v^2 half-way to the border over that in the centre:", **about)
 
@@ -217,7 +210,7 @@ def _claims_of_gap(results: Results, e: float) -> list[Claim]:
             f"g = {gap:g}, ln of m W_v^2/(k W_x^2) in the centre, which is 0 for a free rod of any "
             "damping:",
             **at_choices(of_gaps, lambda runs: runs.estimate(results, _equipartition)),
-            within=around(0.0, _FLAT),
+            within=(-_FLAT, _FLAT),
             reason="with a small gap neighbours confine a rod more than its spring does",
         ),
         _claim(

@@ -18,14 +18,8 @@ from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array, middle_tenth
 from crazybilliards.reproduction import chains
 from crazybilliards.reproduction.claims.study import Results, Runs, Study
-from crazybilliards.reproduction.claims.verdicts import (
-    EYE,
-    Claim,
-    Estimate,
-    at_choices,
-    furthest_in_plot,
-)
-from crazybilliards.reproduction.profiles import mirrored
+from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, at_choices
+from crazybilliards.reproduction.profiles import beyond_the_eye, mirrored
 
 _S = Chain().thermal_length
 
@@ -118,7 +112,7 @@ def _power_law_claim(results: Results) -> Claim:
     """Decide whether power laws are visibly off in plots of <dx>, at every restitution."""
 
     def least(law: Law, group: dict[float, Runs]) -> Estimate:
-        distances = [_beyond_the_eye(runs.mean(results), law) for runs in group.values()]
+        distances = [_off_the_best(runs.mean(results), law) for runs in group.values()]
         return min(distances, key=lambda distance: distance.value - 3 * distance.error)
 
     ours, other = _STEPS.values()
@@ -150,8 +144,8 @@ def _two_power_laws(i: Array, scale: float, nu: float, shift: float) -> Array:
     return np.asarray(scale * (left - right))
 
 
-def _beyond_the_eye(run: xr.Dataset, law: Law) -> Estimate:
-    """Return the distance from the best fit that decides, as a share of the plot, less EYE."""
+def _off_the_best(run: xr.Dataset, law: Law) -> Estimate:
+    """Return how much further than an eye sees the best fit is off."""
     half = mirrored(run).isel(particle=slice(0, chains.LARGE // 2))
     i, shift = half.particle.values.astype(float), half.mean_displacement.values
 
@@ -162,7 +156,7 @@ def _beyond_the_eye(run: xr.Dataset, law: Law) -> Estimate:
     fine = np.geomspace(1, i[-1], 2000)
     distances = distances_in_plot(i, shift, fine, law(fine, *values))
     errors = half.mean_displacement_error.values / np.ptp(shift)
-    return furthest_in_plot(distances, errors).minus(Estimate(EYE, 0.0))
+    return beyond_the_eye(distances, errors)
 
 
 def _energy_claims(results: Results) -> list[Claim]:

@@ -18,7 +18,7 @@ from crazybilliards.comparison.side_by_side.grid_figures import draw_density
 from crazybilliards.comparison.stationary_theories import TITLES
 from crazybilliards.kinetic import equilibrium, force_balance
 from crazybilliards.model import Chain, chain_of
-from crazybilliards.reproduction import chains
+from crazybilliards.reproduction import chains, distributions
 from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort
 from crazybilliards.reproduction.claims.verdicts import (
     EYE,
@@ -27,12 +27,6 @@ from crazybilliards.reproduction.claims.verdicts import (
     furthest_in_plot,
     in_plot,
     worst,
-)
-from crazybilliards.reproduction.distributions import (
-    distance_in_plot,
-    draw_distributions,
-    gaussian,
-    histogram,
 )
 
 # -- figure 8: velocities --------------------------------------------------------------
@@ -56,9 +50,9 @@ _METHODS = {"event-driven": _LONG} | {
 
 def _distance_from_free_rod(runs: Sequence[xr.Dataset]) -> float:
     """Return how far p(v) is off the free rod's, as a share of the plot: the worse of two rods."""
-    densities = [histogram(runs, [particle], _SHOWN * _UNIT) for particle in _RODS]
-    law = partial(gaussian, width=_UNIT)
-    return max(distance_in_plot(v, p, law, _SHOWN * _UNIT) for v, p in densities)
+    densities = [distributions.histogram(runs, [particle], _SHOWN * _UNIT) for particle in _RODS]
+    law = partial(distributions.gaussian, width=_UNIT)
+    return max(distributions.distance_in_plot(v, p, law, _SHOWN * _UNIT) for v, p in densities)
 
 
 def _claims_of_velocities(results: Results) -> list[Claim]:
@@ -80,7 +74,7 @@ def _claims_of_velocities(results: Results) -> list[Claim]:
 
 def _draw_velocities(results: Results) -> Figure:
     figure, (left, right) = panels(1, 2, height=2.7)
-    draw_distributions(left, chains.ELASTIC.members(results), _RODS)
+    distributions.draw_distributions(left, chains.ELASTIC.members(results), _RODS)
     entitle(left, f"$L = {chains.ELASTIC.chain.size}$")
     left.legend(loc="lower center")
     for number, (label, runs) in enumerate(_METHODS.items()):

@@ -13,21 +13,15 @@ from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import chain_of
 from crazybilliards.model.arrays import Array, middle_tenth
-from crazybilliards.reproduction import chains
+from crazybilliards.reproduction import chains, distributions
 from crazybilliards.reproduction.claims.study import Results, Runs, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, at_choices, in_plot
-from crazybilliards.reproduction.distributions import (
-    distance_in_plot,
-    draw_distributions,
-    histogram,
-    mean_shape,
-)
 from crazybilliards.reproduction.fits import tail_length
 
 
 def _draw(results: Results, runs: Runs, particles: Sequence[int]) -> Figure:
     figure, [ax] = panels(1, 1, height=2.9)
-    draw_distributions(ax, runs.members(results), particles)
+    distributions.draw_distributions(ax, runs.members(results), particles)
     legend_above(figure, ax)
     return figure
 
@@ -46,16 +40,16 @@ def _misfit_of_gaussian(runs: Sequence[xr.Dataset]) -> float:
         return np.asarray(height * np.exp(-(((v - centre) / width) ** 2) / 2))
 
     width = float(np.sqrt(np.mean([central_width(run) ** 2 for run in runs])))
-    v, p = histogram(runs, _BULK, _WIDTHS_SHOWN * width)
+    v, p = distributions.histogram(runs, _BULK, _WIDTHS_SHOWN * width)
     values, _ = curve_fit(model, v, p, p0=(float(p.max()), 0.0, width))
-    return distance_in_plot(v, p, lambda v: model(v, *values), _WIDTHS_SHOWN * width)
+    return distributions.distance_in_plot(v, p, lambda v: model(v, *values), _WIDTHS_SHOWN * width)
 
 
 def _outward_skewness(run: xr.Dataset) -> float:
     """Return that of the outer three rods; the mirror image of the left end is the right end."""
-    left, right = range(1, 4), range(chains.LARGE - 2, chains.LARGE + 1)
-    at_right, at_left = (mean_shape(run, end, "velocity_skewness") for end in (right, left))
-    return (at_right - at_left) / 2
+    ends = range(1, 4), range(chains.LARGE - 2, chains.LARGE + 1)
+    left, right = (distributions.mean_shape(run, end, "velocity_skewness") for end in ends)
+    return (right - left) / 2
 
 
 def _claims_inelastic(results: Results) -> list[Claim]:
@@ -70,7 +64,7 @@ def _claims_inelastic(results: Results) -> list[Claim]:
         )
 
     skewness, border, centre = map(of_each, (_outward_skewness, border_width, central_width))
-    peaks = of_each(lambda run: mean_shape(run, _BULK, "velocity_kurtosis"))
+    peaks = of_each(lambda run: distributions.mean_shape(run, _BULK, "velocity_kurtosis"))
     ours = peaks.pop(chains.DEFAULT)
     unit = _INELASTIC[chains.DEFAULT].chain.free_velocity_width
     narrowing = {step: border[step].minus(centre[step]).times(1 / unit) for step in border}
@@ -139,8 +133,9 @@ def _widening(run: xr.Dataset) -> float:
 
 def _claims_weakly_damped(results: Results) -> list[Claim]:
     runs = _FLIPPERS[chains.DEFAULT][_WEAK]
-    unit, ends = runs.chain.free_velocity_width, (1, _SIZE)
-    kurtosis = runs.estimate(results, lambda run: mean_shape(run, ends, "velocity_kurtosis"))
+    unit = runs.chain.free_velocity_width
+    peak = partial(distributions.mean_shape, particles=(1, _SIZE), name="velocity_kurtosis")
+    kurtosis = runs.estimate(results, peak)
     ratio = runs.estimate(results, _tail_ratio)
     measured = partial(chains.at_steps, results, _FLIPPERS, _WEAK)
     source = "section Anti-Dissipation, fig:mom_hist_antidiss_gamma4"
@@ -171,7 +166,7 @@ def _claims_weakly_damped(results: Results) -> list[Claim]:
 def _draw_weakly_damped(results: Results) -> Figure:
     runs = _FLIPPERS[chains.DEFAULT][_WEAK].members(results)
     figure, [ax] = panels(1, 1, height=2.9)
-    draw_distributions(ax, runs, _FLIPPERS_SHOWN)
+    distributions.draw_distributions(ax, runs, _FLIPPERS_SHOWN)
     both = [_border_density(run) for run in runs]
     v, p = both[0][0], np.mean([density for _, density in both], axis=0)
     begin = _TAIL * float(np.sqrt(np.mean([border_width(run) ** 2 for run in runs])))

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,30 +16,17 @@ from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array, middle_tenth
 from crazybilliards.reproduction import chains
-from crazybilliards.reproduction.claims.study import (
-    Results,
-    Runs,
-    Solution,
-    Study,
-    effort,
-    share_of_runs,
-)
-from crazybilliards.reproduction.claims.verdicts import (
-    EYE,
-    Claim,
-    Estimate,
-    at_choices,
-    furthest_in_plot,
-)
-from crazybilliards.reproduction.profiles import bulge, mirrored, nu
+from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort, share_of_runs
+from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, at_choices
+from crazybilliards.reproduction.profiles import beyond_the_eye, bulge, mirrored, nu
 
 _RESTITUTION = 1.05
 _CONVEX = "ln of the border's width over the centre's:"
 _CONCAVE = "ln of the centre's width over the border's:"
 
 
-def _draw(results: Results, curves: dict[str, tuple[Runs, Solution, float]], ylabel: str) -> Figure:
-    """Draw W_v(i) by label: of runs as symbols, of the gas as lines, both in a unit."""
+def _draw(results: Results, curves: dict[str, Any], ylabel: str) -> Figure:
+    """Draw W_v(i): of runs as symbols, of the gas as lines, both in a unit, by their label."""
     figure, [ax] = panels(1, 1, height=3.1)
     for number, (label, (runs, theory, unit)) in enumerate(curves.items()):
         draw_rods(ax, runs.mean(results), "velocity_width", number=number, unit=unit, label=label)
@@ -82,8 +70,7 @@ def _claims_by_damping(results: Results) -> list[Claim]:
     stated: tuple[tuple[str, str, float, chains.Quantity], ...] = (
         (f"convex at gamma = {_WEAK:g}", _CONVEX, _WEAK, bulge),
         (f"concave at gamma = {_STRONG:g}", changes, _STRONG, _concavity),
-        (f"{more} {_STRONG:g}", rate, _STRONG, _crowding),
-        (f"{more} {_WEAK:g}", rate, _WEAK, _crowding),
+        *((f"{more} {g:g}", rate, g, _crowding) for g in (_STRONG, _WEAK)),
     )
     claims = [
         Claim(name, words, **chains.at_steps(results, _BY_DAMPING, g, quantity), source=_SOURCE)
@@ -104,10 +91,10 @@ def _power_law_claim(results: Results) -> Claim:
         "gamma W_v against i for the five dampings, rods averaged with their mirror images, both "
         f"axes linear: {words}; how much further than an eye sees, {EYE:g} of the plotted range, "
         "the symbol that decides is away from the nearest point of the line:",
-        number=_beyond_the_eye(results, ours, np.asarray),
+        number=_off_the_fit(results, ours, np.asarray),
         elsewhere={
-            "both axes logarithmic": _beyond_the_eye(results, ours, np.log),
-            chains.OTHER: _beyond_the_eye(results, other, np.asarray),
+            "both axes logarithmic": _off_the_fit(results, ours, np.log),
+            chains.OTHER: _off_the_fit(results, other, np.asarray),
         },
         source=_SOURCE,
         ours="whether the axes are linear",
@@ -115,10 +102,10 @@ def _power_law_claim(results: Results) -> Claim:
     )
 
 
-def _beyond_the_eye(
+def _off_the_fit(
     results: Results, group: dict[float, Runs], axes: Callable[[Array], Array]
 ) -> Estimate:
-    """Return the distance from the fit that decides, as a share of the plot, less EYE."""
+    """Return how much further than an eye sees the fit is off."""
     profiles = {damping: runs.mean(results) for damping, runs in group.items()}
     plotted = axes(np.concatenate([g * run.velocity_width.values for g, run in profiles.items()]))
     low, high = float(plotted.min()), float(plotted.max())
@@ -132,8 +119,7 @@ def _beyond_the_eye(
     symbols, line = (run.particle.values, _WEAK * width), (fine, _WEAK * fit(fine))
     distances = distances_in_plot(*map(axes, (*symbols, *line)), y_range=(low, high))
     below, above = axes(_WEAK * (width - error)), axes(_WEAK * (width + error))
-    furthest = furthest_in_plot(distances, (above - below) / 2 / (high - low))
-    return furthest.minus(Estimate(EYE, 0.0))
+    return beyond_the_eye(distances, (above - below) / 2 / (high - low))
 
 
 BY_DAMPING = Study(

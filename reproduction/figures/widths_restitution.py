@@ -80,13 +80,11 @@ def _residuals(results: Results, group: dict[float, Runs]) -> dict[str, Any]:
 
 def _draw(results: Results) -> Figure:
     figure = Figure(figsize=(TWO_COLUMNS, 3.9))
-    axes = figure.subplot_mosaic(
-        [["widths", "exponents"], ["widths", "centre"]], width_ratios=(1.4, 1)
-    )
+    axes = figure.subplot_mosaic("ab;ac", width_ratios=(1.4, 1))
     letter(axes.values())
-    _draw_widths(axes["widths"], results)
-    legend_above(figure, axes["widths"])
-    exponents, centre = axes["exponents"], axes["centre"]
+    widths, exponents, centre = axes.values()
+    _draw_widths(widths, results)
+    legend_above(figure, widths)
     exponents.sharex(centre)
     _draw_by_restitution(exponents, results, lambda result: -nu(result))
     (_, fit), fine = _exponential(results, _RUNS), np.linspace(0, 1, 101)
