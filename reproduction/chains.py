@@ -93,7 +93,7 @@ ELASTIC = Runs("L=100 e=1", Chain(size=100), effort((8, 50_000), (8, 50_000)), _
 
 
 def at_both_steps(runs: Mapping[Key, Runs]) -> dict[str, dict[Key, Runs]]:
-    """Return the runs, of 1000 rods or of flippers, and such at the other step, by the steps."""
+    """Return the runs, of 1000 rods or of flippers, and those at the other step, by the steps."""
 
     def again(chain: Chain) -> Effort:
         if chain == Chain(size=LARGE, restitution=0.0):

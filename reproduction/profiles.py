@@ -50,10 +50,9 @@ def beyond_the_eye(distances: Array, errors: Array) -> Estimate:
 
 
 def fits_in_plot(of_what: str, runs: Iterable[xr.Dataset]) -> dict[str, Any]:
-    """Return what decides whether two power laws fit the widths in a plot of all runs.
+    """Return what decides whether two power laws fit the widths in a logarithmic plot of all runs.
 
-    Both axes are logarithmic, widths are averaged over mirror images, and the plotted range ends at
-    the free rod's width.
+    Widths are averaged over mirror images, and the plotted range ends at the free rod's width.
     """
     runs = [mirrored(run) for run in runs]
     free = np.log(chain_of(runs[0]).free_velocity_width)

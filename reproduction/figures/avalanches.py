@@ -73,11 +73,11 @@ def _claims_inelastic(results: Results) -> list[Claim]:
     # Of each count by what was chosen, the first one being ours.
     exponents = {
         count: {
-            f"dt = {step:g}, N_c = {low} to {high}": _exponent(
-                results, "centre", step, count, low, high
+            f"dt = {dt:g}, N_c = {low} to {high}": _exponent(
+                results, "centre", dt, count, low, high
             )
             for low, high in each
-            for step in sorted(_RUNS, key=lambda step: step != _MIDDLE)
+            for dt in sorted(_RUNS, key=lambda dt: dt != _MIDDLE)
         }
         for count, each in _SIZES.items()
     }

@@ -166,6 +166,7 @@ def _draw(results: Results) -> Figure:
     return figure
 
 
+_CLAIMS = (_frequency_claim, _growth_claim, _singularity_claim)
 ENERGY = Study(
     number=15,
     name="energy",
@@ -175,8 +176,6 @@ ENERGY = Study(
     "of every pair in half a period. (b) The runs with quadratic springs against the time left "
     "until their t_c, fitted from E = 1e5 on.",
     needs=[runs for steps in _NEEDS for both in steps.values() for runs in both],
-    claims=lambda results: [
-        claim(results) for claim in (_frequency_claim, _growth_claim, _singularity_claim)
-    ],
+    claims=lambda results: [each(results) for each in _CLAIMS],
     draw=_draw,
 )
