@@ -60,7 +60,7 @@ class Walls(Averaged):
         if self._keeps_energy():
             ends = self.sums[:, 2].sum(axis=0) / counts.sum()
             error = np.sqrt(2 * ends * self.run.replicas) / (counts.sum() * interval)
-            variables["wall_force_error"] = "wall", error
+            variables["wall_force_error"] = ("wall",), error
         e = self.run.chain.wall_restitution
         return checked_rate(self.run, "wall_collision_rate", e, variables)
 
