@@ -20,10 +20,9 @@ this is the one-dimensional one-component plasma (R. J. Baxter, Math. Proc. Camb
 the positions are those of L independent draws from w, in order. Without springs they are spread
 evenly, and rod i of L has the Beta law of the places 2h Beta(i, L + 1 - i).
 
-A wall takes the momentum that the outermost rod brings, so the force on it, which in one dimension
-is the pressure, is T times the density of that rod at the wall. Without springs it is
-L T/(X - 2RL), that of an ideal gas of points in the free length (L. Tonks, Phys. Rev. 50, 955,
-1936).
+The force on a wall, which in one dimension is the pressure, is T times the density of the outermost
+rod there. Without springs it is L T/(X - 2RL), that of an ideal gas of points in the free length
+(L. Tonks, Phys. Rev. 50, 955, 1936).
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 
 from crazybilliards.kinetic.accuracy import expected
-from crazybilliards.kinetic.exact.recursion import Recursion, recursion_of, weights
+from crazybilliards.kinetic.exact.recursion import Recursion, recursion_of
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_integer
@@ -81,19 +80,15 @@ def _in_vocabulary(chain: Chain, recursion: Recursion) -> xr.Dataset:
     density, label = np.zeros((2, x.size))
     mean, width, log_z = np.zeros((3, chain.size))
     for i in range(chain.size):
-        d, p, log_z[i] = recursion.distribution(i)
-        share = recursion.spacing * weights(d.size) * p
+        d, p, share, log_z[i] = recursion.distribution(i)
         mean[i] = d @ share
         width[i] = np.sqrt((d - mean[i]) ** 2 @ share)
         _add_rod(x, chain.anchors[i] + d, p, density, label)
-    walls = {}
-    if chain.box:
-        at_wall = recursion.distribution(0)[1][0]
-        walls["wall_force"] = ("wall", np.full(2, chain.temperature * at_wall))
+    force = np.full(2, chain.temperature * recursion.distribution(0)[1][0])
     dataset = result(
         chain,
         {
-            **walls,
+            **({"wall_force": ("wall", force)} if chain.box else {}),
             "density": ("x", density),
             "label": ("x", label),
             "mean_displacement": ("particle", mean),

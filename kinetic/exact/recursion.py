@@ -3,9 +3,7 @@ r"""The recursion of :mod:`.gibbs_measure` on a grid: log Z_i of all rods.
 The integrals are on one uniform grid in y and are kept as logarithms, because the Z_i span hundreds
 of decades. Without walls every rod has a window of it around its anchor; Z_i is constant beyond.
 Within a cell the logarithm of the integrand is a parabola, which stays accurate if the integrand
-changes by large factors from one node to the next. Sums over the grid have Gregory's weights of
-fourth order at the walls. Z must be the same for every i. Its spread is the residual that
-:func:`equilibrium` reports.
+changes by large factors. Sums over the grid have Gregory's weights of fourth order at the walls.
 """
 
 from __future__ import annotations
@@ -62,14 +60,15 @@ class Recursion:
         shift = min(self.first[i] - self.first[i - 1], self.log_f.shape[1] - 1)
         return np.pad(self.log_z(i - 1)[shift:], (0, shift), mode="edge")
 
-    def distribution(self, i: int) -> tuple[Array, Array, float]:
-        """Return displacements of rod i, their density phi_i, and log Z."""
+    def distribution(self, i: int) -> tuple[Array, Array, Array, float]:
+        """Return displacements of rod i, their density phi_i, their shares in means, and log Z."""
         log_p = self.log_weight(i) + self.log_below(i)
         log_p += self.log_below(self.chain.size - 1 - i)[::-1]
         p = np.exp(log_p - log_p.max())
         total = weights(p.size) @ p
-        d = self.nodes(i) - self.chain.reduced_anchors[i]
-        return d, p / (self.spacing * total), float(log_p.max() + np.log(total))
+        d, density = self.nodes(i) - self.chain.reduced_anchors[i], p / (self.spacing * total)
+        share = self.spacing * weights(p.size) * density
+        return d, density, share, float(log_p.max() + np.log(total))
 
 
 def weights(nodes: int) -> Array:

@@ -1,8 +1,7 @@
 r"""Hydrodynamics: the density rho(x, t) and the flow velocity V(x, t) of the chain in time.
 
-The continuity and the velocity equation of the paper (arXiv:1404.7460, ``eq9`` in its appendix and
-``modeleq``, there also ``continuity_helbing``). The paper uses them for V = 0 only. Here they have
-the mass m and any spring:
+These are the continuity and the velocity equation of the paper (arXiv:1404.7460, ``eq9`` in its
+appendix and ``modeleq``), which uses them for V = 0 only, with the mass m and any spring:
 
     rho_t + (rho V)_x = 0,
     V_t + V V_x = -(1/rho) (rho W^2/(1 - 2 R rho))_x - F(<dx>)/m - (gamma/m) V,
@@ -14,23 +13,22 @@ non-linear spring is an approximation of the mean force.
 <dx> = x - (2R + g)(N - L/2) without an input. Or a frozen profile <dx>(x), such as the one that the
 paper fits in the steady state.
 
-**Velocity variance.** The paper writes W_v(r, t), has no equation for it, and takes it as constant
-in the steady state at restitution 1. *Isothermal*: W^2 is the free value at all times. This is
-right in the steady state. It is wrong in a transient at the reference damping, where heat is
-exchanged more slowly than the chain moves. *Evolving*: the velocity variance and the third moment
-q = <(v - V)^3> have equations of their own. With D = d/dt + V d/dx, and the derivative
-d/dy = (1 - 2 R rho)^-1 d/dx in the reduced coordinate, where the density is n = rho/(1 - 2 R rho),
+**Velocity variance.** The paper has no equation for it, and takes it as constant in the steady
+state at restitution 1. *Isothermal*: W^2 is the free value at all times. This is wrong in a
+transient at the reference damping, where heat is exchanged more slowly than the chain moves.
+*Evolving*: W^2 and the third moment q = <(v - V)^3> have equations of their own. With
+D = d/dt + V d/dx, d/dy = (1 - 2 R rho)^-1 d/dx in the reduced coordinate, and the density
+n = rho/(1 - 2 R rho) there,
 
     D W^2 = -2 W^2 V_y - (n q)_y/n - 2 Gamma_T (W^2 - A^2/(2 m gamma)) - a E n W^3,
     D q   = -3 W^2 (W^2)_y - 3 q V_y - (3 Gamma_T + a c n W) q.
 
-The first terms are the adiabatic compression of a gas with one degree of freedom. Its velocities
-are closed by the fourth moment of a Gaussian, <(v - V)^4> = 3 W^4. The noise exchanges heat at the
-rate Gamma_T = gamma/m. What collisions take from the heat, E, and from the third moment, c, are
-Gaussian averages (``energy`` and ``decay`` of
-:mod:`crazybilliards.kinetic.gas.collision_moments`). A rod meets the L - 1 others only,
-a = 1 - 1/L. Without a gap and at restitution 1 this is exact for Gaussian clouds, in which q = 0.
-*Prescribed*: a number, or a profile W^2(x), at all times.
+The first terms are the adiabatic compression of a gas with one degree of freedom, closed by the
+fourth moment of a Gaussian, <(v - V)^4> = 3 W^4. The noise exchanges heat at the rate
+Gamma_T = gamma/m. What collisions take from the heat, E, and from the third moment, c, are
+``energy`` and ``decay`` of :mod:`crazybilliards.kinetic.gas.collision_moments`. A rod meets the
+L - 1 others only, a = 1 - 1/L. Without a gap and at restitution 1 this is exact for Gaussian
+clouds, in which q = 0. *Prescribed*: a number, or a profile W^2(x), at all times.
 
 **Limits of the closure.** q cannot follow a gradient that is shorter than the flight of a rod. Its
 decay has one more term, |(W^2)_y|/W, and where |q| > W^3 the flux is n W^3. The solution ends with
@@ -43,11 +41,10 @@ gamma/m and Gamma_T = gamma <1/m>, because light rods exchange more heat with th
 restitution 1 collisions of unequal rods damp q. Other restitutions are refused.
 
 **Boundary conditions.** The density falls to zero outside, and no rods enter or leave. In a box
-V = q = 0 at x = -X/2 and X/2, and the density there follows. Walls are elastic.
+V = q = 0 at x = -X/2 and X/2. Walls are elastic.
 
-There are two independent solvers, on labels (:mod:`.label_frame`, the default) and on a grid of
-positions (:mod:`.eulerian_frame`), which is for restitution 1 and has q = 0. Both give py-pde their
-rates of change, and its solvers step them in time (:mod:`.pde_solver`).
+Two independent solvers step the equations with py-pde: on labels (:mod:`.label_frame`, the default)
+and on a grid of positions (:mod:`.eulerian_frame`), which is for restitution 1 and has q = 0.
 """
 
 from __future__ import annotations
@@ -103,8 +100,8 @@ def hydrodynamics(
     Parameters
     ----------
     chain
-        The chain, with any gap and both springs. Its restitution must be 1 unless
-        ``velocity_variance`` is a number, a profile or, in the label frame, ``"evolving"``.
+        The chain. Its restitution must be 1 unless ``velocity_variance`` is a number, a profile
+        or, in the label frame, ``"evolving"``.
     start
         A result with ``density`` over x and optionally ``label``, ``flow_velocity`` and
         ``velocity_variance``, such as ``force_balance`` of another chain (a quench), or
@@ -112,27 +109,26 @@ def hydrodynamics(
     duration
         Time to solve for [t_0]; 12 relaxation times 2m/gamma come within 1e-5 of the steady state.
     displacement
-        None: by labels, which the flow carries along. Or a frozen <dx>(x) [R], in any form that
-        ``force_balance`` takes. It needs the eulerian frame.
+        None: by labels, which the flow carries along. Or, in the eulerian frame, a frozen <dx>(x)
+        [R], in any form that ``force_balance`` takes.
     velocity_variance
         None: isothermal at the free W^2 (wrong in transients). ``"evolving"``: with the equations
         of temperature and, in the label frame, heat flux. Or a prescribed W^2 [R^2/t_0^2] in any
-        form that ``force_balance`` takes: a number is isothermal at this value, a profile W^2(x)
-        needs the eulerian frame.
+        form that ``force_balance`` takes: a number, or in the eulerian frame a profile W^2(x).
     frame
-        ``"label"``: conserves the number of rods exactly, has no grid of positions, and takes
-        milliseconds to a second. ``"eulerian"``: the paper's equations on a grid of positions,
-        with a temperature but no heat flux, as an independent check. It refuses rods that the
-        springs make too fast for its cells. Between walls it takes starts with a vacuum at a wall,
-        which the other frame refuses if the temperature evolves.
+        ``"label"``: conserves the number of rods exactly, and takes milliseconds to a second.
+        ``"eulerian"``: the paper's equations on a grid of positions, without heat flux, as an
+        independent check. It refuses rods that the springs make too fast for its cells. Between
+        walls it takes starts with a vacuum at a wall, which the other frame refuses if the
+        temperature evolves.
     every
         Time between outputs [t_0]; None: a hundredth of the duration. Each output takes 100 bytes
         for each node of its grid x (21 or more in a rod length) and for each rod.
     cells
         Number of cells; None: chosen from the chain's scales. In the eulerian frame a cell may be
         at most half a thermal length wide, which gives errors of up to 3 % of this length in
-        positions. The default is a tenth of it. Both are less on springs that are so soft that
-        the rods, or the waves of a steep start, are short against the thermal length.
+        positions, and is a tenth of it by default. Both are less if the rods, or the waves of a
+        steep start, are short against the thermal length.
     progress
         Show a progress bar, on a terminal or in a notebook, elsewhere a line every half minute.
 
@@ -150,12 +146,11 @@ def hydrodynamics(
         thermal length s, quadratic springs without a gap, L (1 - e) from -1 to 10,
         gamma s/(m W) from 0.3 to 1.5, and the equilibrium at e = 1 stretched by 0.8 to 1.3 or moved
         by up to 2 s. It is 0 where Gaussian clouds are exact, and NaN for others, at e != 1 with
-        an ``UnmeasuredWarning``. For equal elastic rods without
-        springs in a box, whose exact law is known, ``attrs["wave_model_error"]`` is the largest
-        error of the slowest wave of density, in units of its first height. For these, and for
-        equal elastic rods on linear springs without a gap, whose exact law is known from any start,
+        an ``UnmeasuredWarning``. For equal elastic rods without springs in a box,
+        ``attrs["wave_model_error"]`` is the largest error of the slowest wave of density, in units
+        of its first height. For these, and on linear springs without a gap,
         ``attrs["label_model_error"]`` is the largest error of ``label``, over the number of rods,
-        at 20 of the times; for others NaN. A warning says if it is above 0.15, as where two streams
+        at 20 of the times, for others NaN. A warning says if it is above 0.15, as where two streams
         meet, which a fluid does not let through each other.
 
         ``attrs["status"]`` is ``diverged`` if the energy grew a thousandfold, and ``interrupted``
@@ -218,10 +213,7 @@ def _read_closure(
     velocity_variance: Evolving | float | Prescribed | None,
     frame: Frame,
 ) -> tuple[Chain, Profile | None, Profile | None, str]:
-    """Return the chain, <dx>(x) and W^2(x) if they are prescribed, and the kind of W^2.
-
-    For a number W^2 it is the elastic chain with that temperature.
-    """
+    """Return the chain (of a number W^2: the elastic one), <dx>(x), W^2(x), and the kind of W^2."""
     frozen = read_displacement(chain, displacement)
     variance, kind = None, "isothermal"
     if isinstance(velocity_variance, str):
@@ -261,10 +253,7 @@ def _result(
     reached = len(fields.density)
     status = "completed" if reached == times.size else "interrupted"
     status, times = "diverged" if fields.diverged else status, times[:reached]
-    more = {}
-    if fields.heat_flux is not None:
-        more["heat_flux"] = (along, chain.mean_mass * fields.heat_flux)
-    x, label = fields.x, fields.label
+    x, label, flux = fields.x, fields.label, fields.heat_flux
     rods = label[:, -1] - label[:, 0]
     reduced = x - 2 * chain.radius * (label - chain.size / 2)
     mean, square = (trapezoid(fields.density * reduced**n, x) / rods for n in (1, 2))
@@ -283,7 +272,7 @@ def _result(
             "cloud_width": ("time", np.sqrt(square - mean**2)),
             "kinetic_energy": ("time", chain.size * chain.mean_mass / 2 * fields.energy),
             "unsteadiness": ("time", fields.unsteadiness),
-            **more,
+            **({} if flux is None else {"heat_flux": (along, chain.mean_mass * flux)}),
         },
         coordinates={"x": x, "time": times},
         source="theory",

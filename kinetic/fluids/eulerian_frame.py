@@ -10,11 +10,10 @@ where Gamma_T = gamma <1/m>, W_0^2 = A^2/(2 m gamma) and F is the spring's force
 <dx> = x - (2 R + g)(N - L/2), N = int rho dx, or at a frozen profile <dx>(x). py-pde gets the grid
 and these fields in the chain's units, R and t_0, and with these names.
 
-**Discretisation.** The finite volumes (:mod:`.finite_volumes`) are of second order and well
-balanced, and n always stays positive and below close packing. The grid ends far out, where the
-density vanishes, or at walls, where V = 0. No rod passes its ends. The time steps are Runge-Kutta
-steps of four stages and of fixed length, which resolve the speed that the springs give the rods. If
-the flow is faster, the solution is computed again with half the step.
+**Discretisation.** The finite volumes (:mod:`.finite_volumes`) are of second order. The grid ends
+far out, where the density vanishes, or at walls, where V = 0. The Runge-Kutta steps of four stages
+have a fixed length, which resolves the speed that the springs give the rods. If the flow is faster,
+the solution is computed again with half the step.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ from crazybilliards.kinetic.fluids.finite_volumes import (
     make_rate,
     primitive,
 )
-from crazybilliards.kinetic.fluids.pde_solver import FlowFields, make_state, solve
+from crazybilliards.kinetic.fluids.pde_solver import FlowFields, solve
 from crazybilliards.kinetic.fluids.position_cells import make_faces, starting_fields
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import length_unit
@@ -148,7 +147,8 @@ def _integrate(
             )
         solution = solve(
             rate,
-            make_state(fields, (faces[0], faces[-1])),
+            fields,
+            (faces[0], faces[-1]),
             times,
             progress=progress,
             solver="runge-kutta",

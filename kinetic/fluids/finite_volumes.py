@@ -1,13 +1,12 @@
 r"""Finite volumes for the eulerian frame: fluxes, reconstruction, rates of change.
 
-The equations are those of :mod:`.eulerian_frame`. Fluxes are those of Harten,
-Lax and van Leer between states that are reconstructed linearly in ln p, V and ln W^2 with the
-minmod limiter. For every value of p = rho W^2/(1 - 2 R rho) the density is between vacuum and close
-packing. The scheme is well balanced. The limiter acts on the deviation of ln p from the state at
-rest, where (ln p)' = -(F/m)(1 - 2 R rho)/W^2, and the springs' force is the difference of the
-pressures that it balances at rest. Fluxes and forces therefore cancel at rest. No flux passes the
-outermost faces, but that at walls rods push: the flux of momentum there is the one between the flow
-and its mirror image.
+The equations are those of :mod:`.eulerian_frame`. Fluxes are those of Harten, Lax and van Leer
+between states that are reconstructed linearly in ln p, V and ln W^2 with the minmod limiter. For
+every p = rho W^2/(1 - 2 R rho) the density is between vacuum and close packing. The scheme is well
+balanced: the limiter acts on the deviation of ln p from the state at rest, where
+(ln p)' = -(F/m)(1 - 2 R rho)/W^2, and the springs' force is the difference of the pressures that it
+balances there. No flux passes the outermost faces, but for the momentum at walls, whose flux is
+that between the flow and its mirror image.
 """
 
 from __future__ import annotations

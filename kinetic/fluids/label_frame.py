@@ -1,9 +1,8 @@
 r"""Hydrodynamics on labels (Lagrangian): the unknown is the position of the rods of each label.
 
-A label nu = N/L - 1/2 in (-1/2, 1/2) is carried by the flow, N_t + V N_x = 0, so the displacement
-<dx> = x - (2R + g)(N - L/2) that closes the equations is known exactly. Lengths are in thermal
-lengths s, velocities in W, times in s/W, and eta(nu, t) = y/s. The continuity equation holds by
-construction, and the velocity equation reads
+A label nu = N/L - 1/2 in (-1/2, 1/2) is carried by the flow, N_t + V N_x = 0, so that the
+displacement <dx> is known exactly. Lengths are in thermal lengths s, velocities in W, times in s/W,
+and eta(nu, t) = y/s. The continuity equation holds by construction, and the velocity equation reads
 
     eta_t = V,      V_t = -dp/dnu - K u |u|^(n-2) - Gamma V,        p = theta / eta_nu,
 
@@ -15,20 +14,19 @@ moment q of the velocities, in W^3, obey
     theta_t = -2 theta V_y - (q/eta_nu)_nu - 2 Gamma_T (theta - 1) - L a E theta^(3/2)/eta_nu,
     q_t = -3 theta theta_y - 3 q V_y - (3 Gamma_T + L a c sqrt(theta)/eta_nu) q,
 
-with f_y = f_nu/eta_nu for any f, and Gamma_T = gamma <1/m> s/W. E, c and a are those of
-:mod:`.equations`, as are the limits of q. The quantity S = theta eta_nu^2 is not changed by the
-flow.
+with f_y = f_nu/eta_nu for any f, and Gamma_T = gamma <1/m> s/W. E, c, a and the limits of q are
+those of :mod:`.equations`. The flow does not change S = theta eta_nu^2.
 
-**Between walls** the unit of length is that of the state at rest, which may be shorter than s, and
-K is the strength of the springs in it (:mod:`crazybilliards.kinetic.statics.label_closure`). V = 0
-at a wall, which is a mirror: two more cells are the images of the outermost ones.
+**Between walls** the unit of length and the strength K of the springs are those of
+:mod:`crazybilliards.kinetic.statics.label_closure`. V = 0 at a wall, which is a mirror: two more
+cells are the images of the outermost ones.
 
 **Discretisation.** M cells of labels, equally wide at the edges, hold eta, V and q. S and p are
 defined on the faces between them, p = kappa S/d^3 with d the distance of neighbouring cells. kappa
 and the positions of the cells are calibrated on the stationary state. This state, its rigid motions
 and, without a gap, every breathing motion are therefore exact for any M. The ends are free, p = 0.
-Shocks are stabilised by an artificial viscosity of von Neumann and Richtmyer on the velocity jump
-that remains after a limited linear reconstruction. It vanishes for smooth flows. With a temperature
+At shocks there is an artificial viscosity of von Neumann and Richtmyer on the velocity jump that
+remains after a limited linear reconstruction, which vanishes for smooth flows. With a temperature
 its work becomes heat.
 """
 
@@ -41,7 +39,7 @@ import numpy as np
 from crazybilliards.kinetic.fluids.label_cells import LabelCells, make_cells, mirrored
 from crazybilliards.kinetic.fluids.label_positions import on_positions
 from crazybilliards.kinetic.fluids.label_rates import CLOSEST, Constants, label_rate
-from crazybilliards.kinetic.fluids.pde_solver import FlowFields, make_state, solve
+from crazybilliards.kinetic.fluids.pde_solver import FlowFields, solve
 from crazybilliards.kinetic.gas.collision_moments import decay_of_two_masses, moments_of_collisions
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import Stationary, stationary
@@ -108,7 +106,8 @@ def solve_on_labels(
         solution = solve(
             lambda values, time: interval * label_rate(values, constants),
             # The cells are not equally wide. For py-pde they have numbers and not positions.
-            make_state(fields, (0, cells.labels.size)),
+            fields,
+            (0, cells.labels.size),
             np.arange(float(times.size)),
             unit=times[1],
             progress=progress,

@@ -25,9 +25,8 @@ def on_positions(
 ) -> FlowFields:
     """Put the solution onto positions and particles, in the chain's units.
 
-    eta is interpolated as a function of the stationary eta of the same label, which is smooth and,
-    for shifts and stretches, linear; beyond the outermost faces it is continued linearly.
-    Densities are those of the stationary state over the slope of that function.
+    eta is a smooth function of the stationary eta of the same label, linear for shifts and
+    stretches. Densities are those of the stationary state over its slope.
     """
     s, W, L, R = state.unit, chain.free_velocity_width, chain.size, chain.radius
     weights = cells.weights

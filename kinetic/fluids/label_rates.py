@@ -1,8 +1,8 @@
 r"""Rates of change of the gas on labels, cell by cell; see :mod:`.label_frame`.
 
-Cells hold eta, V and the heat flux q, and the faces between them S = theta d^2 and the density
-n = kappa/d, with d the distance of the two cells. kappa is then the share of the rods that belongs
-to a face. The pressure's work and the heat flux move energy between cells and faces without loss.
+The faces between cells hold S = theta d^2 and the density n = kappa/d, with d the distance of the
+two cells and kappa the share of the rods that belongs to a face. The pressure's work and the heat
+flux move energy between cells and faces without loss.
 """
 
 from __future__ import annotations

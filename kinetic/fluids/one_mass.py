@@ -12,10 +12,8 @@ amplitudes,
     f' = 3 k W^2 h - 3 G f,
 
 without the last line if there is no heat flux, f = 0, and without the last two if the fluid is
-isothermal, h = 0. With the heat flux the undamped waves have the frequencies
-k W sqrt(3 +- sqrt(6)). The two agree if damping is strong, where both diffuse. With weak damping
-the fluid has sound, and such a gas has none: the damping that would keep its temperature takes the
-wave away.
+isothermal, h = 0. The two agree if damping is strong, where both diffuse. With weak damping the
+fluid has sound, and such a gas has none.
 
 Without a gap equal elastic rods on linear springs are such points, too. From any start the position
 of a point is then normal, with the mean and the variance

@@ -1,9 +1,8 @@
 """What both frames of hydrodynamics share: the call of py-pde, and the fields that they return.
 
 No other module calls py-pde. It gets fields on a uniform grid and a compiled right-hand side, and
-provides the equation class, the grid, the fields, the time steppers, trackers and storage. The
-solver is always named here and not left to a default. The interrupts are named too, because
-trackers that read the clock would make two equal runs differ.
+provides the grid, the fields, the time steppers, trackers and storage. The interrupts are named,
+because trackers that read the clock would make two equal runs differ.
 """
 
 from __future__ import annotations
@@ -47,10 +46,7 @@ class _Rates(NamedTuple):
 
 
 class Flow(PDEBase):
-    """Equations of motion given as a compiled function of (fields, time).
-
-    ``rate`` takes fields of shape (number, cells) and returns their rates of change.
-    """
+    """Equations of motion given as the rates of change of fields (number, cells) at a time."""
 
     def __init__(self, rate: Rate) -> None:
         super().__init__()
@@ -63,21 +59,16 @@ class Flow(PDEBase):
     def evolution_rate(self, state: Any, t: float = 0) -> Any:
         """Return the rates of change, in what has of py-pde's fields only the attribute it reads.
 
-        To make fields for every rate would take longer than most rates. The values lie in an array
-        with cells around them, for which a rate would be compiled once more.
+        Fields take longer to make than most rates. The values lie in an array with cells around
+        them, for which a rate would be compiled once more.
         """
         return _Rates(self.rate(np.ascontiguousarray(state.data), t))
 
 
-def make_state(fields: Mapping[str, Array], ends: tuple[float, float]) -> FieldCollection:
-    """Return fields, by name, on a uniform grid between two ends, as py-pde knows them."""
-    grid = CartesianGrid([ends], len(next(iter(fields.values()))))
-    return FieldCollection([ScalarField(grid, fields[name], label=name) for name in fields])
-
-
 def solve(
     rate: Rate,
-    state: FieldCollection,
+    fields: Mapping[str, Array],
+    ends: tuple[float, float],
     times: Array,
     *,
     progress: bool,
@@ -85,17 +76,16 @@ def solve(
     watch: Callable[[Array, float], bool] = lambda fields, time: False,
     **solver: Any,
 ) -> Array:
-    """Solve from ``times[0]`` on; return the fields at all ``times``, (times, fields, cells).
+    """Solve from fields between two ends; return those at all ``times``, (times, fields, cells).
 
     py-pde ends a run at Ctrl-C without raising. The result then has the first times only, as when
     ``watch`` returned True for the fields and the time [t_0] of an output. ``unit`` is that of
-    ``times`` [t_0].
-
-    ``state`` are the initial values. ``solver`` are the arguments of py-pde: ``solver``,
-    ``backend``, ``dt`` and others.
-    Without ``dt`` the unit of time must be about the time between outputs, because py-pde then
-    takes times that differ by 1e-8 for the same.
+    ``times`` [t_0], and ``solver`` are the arguments of py-pde. Without ``dt`` the unit of time
+    must be about the time between outputs, because py-pde then takes times that differ by 1e-8 for
+    the same.
     """
+    grid = CartesianGrid([ends], len(next(iter(fields.values()))))
+    state = FieldCollection([ScalarField(grid, fields[name], label=name) for name in fields])
     storage = MemoryStorage()
     flow, span = Flow(rate), (float(times[0]), float(times[-1]))
     try:

@@ -58,7 +58,9 @@ def mean_field(chain: Chain, cells: Cells) -> Steady:
     """Return the steady state in which colliding rods are independent."""
     medium, closure = Medium.of(chain), Closure.of_mean_field(cells.contacts)
     descriptions = Descriptions(chain, cells, mean_field=True)
-    if is_driven(chain) and (labels := descriptions.labels):
+    bare = not chain.box and chain.spring == "linear" and chain.size > 1
+    # Their heavy tails are beyond a closure.
+    if bare and chain.restitution > 1 and (labels := descriptions.labels):
         found = driven_points(chain)
         T, flux = found.at(labels.score)
         mean = labels.averaged(T, labels.balanced(T, np.zeros(T.size)))
@@ -66,12 +68,6 @@ def mean_field(chain: Chain, cells: Cells) -> Steady:
         return state._replace(residual=found.residual, flux=chain.size * flux)
     mean = descriptions.solve(medium, closure)
     return Steady(medium, cells, mean, closure, descriptions.labels)
-
-
-def is_driven(chain: Chain) -> bool:
-    """Return whether the points of a chain have the heavy tails that a closure does not know."""
-    bare = chain.exchangeable and not chain.box and chain.spring == "linear"
-    return chain.restitution > 1 and chain.size > 1 and bare
 
 
 def in_agreement(chain: Chain, cells: Cells) -> Steady:

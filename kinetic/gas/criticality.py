@@ -7,11 +7,9 @@ of a chain so hot that the noise does not count therefore obeys
 
     E' = [(e^2 - 1) L sqrt(k/m)/(2 pi) - gamma/m] E.
 
-To first order in e - 1 the growth vanishes at the size
+The growth vanishes at a size that is, to first order in e - 1,
 
     L_c = pi gamma/((e - 1) sqrt(k m)).
-
-The rate above vanishes at a size that is smaller by the factor 2/(1 + e).
 
 **Any damping.** The kinetic equation of first order in e - 1, solved for gamma/sqrt(k m) from 1e-3
 to 3.5, has no steady state from a size on that differs from L_c by 0.01 % up to 0.5 and by 1.2 % at
@@ -45,9 +43,9 @@ class CriticalValue(NamedTuple):
 def critical_size(chain: Chain) -> CriticalValue:
     """Return the number of rods from which on a chain with e > 1 has no steady state.
 
-    The value is that of weak damping. The error is 10 % of it, more than simulations differ, where
-    gamma/sqrt(k m) is up to 1.95 and e up to 1.1, and NaN beyond, with an ``UnmeasuredWarning``.
-    ``chain.size`` and ``chain.gap`` do not matter.
+    The value is that of weak damping. The error is 10 % of it where gamma/sqrt(k m) is up to 1.95
+    and e up to 1.1, and NaN beyond, with an ``UnmeasuredWarning``. ``chain.size`` and ``chain.gap``
+    do not matter.
 
     Raises
     ------
@@ -62,7 +60,7 @@ def critical_size(chain: Chain) -> CriticalValue:
     123
     """
     _require_drive(chain)
-    value = 2 * weak_damping_drag(chain.relative_damping) / (chain.restitution - 1)
+    value = math.pi * chain.relative_damping / (chain.restitution - 1)
     measured = chain.relative_damping <= _SIMULATED and chain.restitution <= _LARGEST
     error = _ERROR * value if measured else math.nan
     warn_if_unmeasured("the critical size", error)
@@ -93,18 +91,12 @@ def _require_drive(chain: Chain) -> None:
         )
 
 
-def weak_damping_drag(damping: float) -> float:
-    """Return the critical (e - 1) L/2 for a damping gamma/sqrt(k m)."""
-    return math.pi / 2 * damping
-
-
 def weak_damping_growth_rate(chain: Chain) -> float:
-    """Return E'/E [1/t_0], without an expansion in e - 1.
+    """Return E'/E [1/t_0], without an expansion in e - 1, on linear springs without a gap.
 
     Simulated chains grow at this rate within 5 % if they have L >= 30 rods, (e^2 - 1) L/2 <= 1.05,
-    gamma <= sqrt(k m)/4 and L >= 1.5 L_c, on linear springs without a gap. At (e^2 - 1) L/2 = 3
-    they grow 16 % faster, and 10 rods grow 10 % more slowly. With a gap rods meet less often, and
-    may not run away at all.
+    gamma <= sqrt(k m)/4 and L >= 1.5 L_c. At (e^2 - 1) L/2 = 3 they grow 16 % faster, and 10 rods
+    grow 10 % more slowly. With a gap they may not run away at all.
     """
     meetings = math.sqrt(chain.stiffness / chain.mass) / math.pi  # of a pair, per time
     gain = (chain.restitution**2 - 1) / 2 * chain.size * meetings

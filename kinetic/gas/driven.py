@@ -41,7 +41,6 @@ from scipy.interpolate import CubicSpline
 from scipy.linalg import solve
 from scipy.special import ndtri, sici
 
-from crazybilliards.kinetic.gas.criticality import weak_damping_drag
 from crazybilliards.kinetic.gas.mean_state import NoSteadyStateError
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
@@ -167,7 +166,7 @@ def driven_points(chain: Chain) -> DrivenPoints:
     Raises NoSteadyStateError where there is no state, or none that the grid resolves.
     """
     damping, e = chain.relative_damping, chain.restitution
-    share = (e - 1) / 2 * chain.size / weak_damping_drag(damping)
+    share = (e - 1) * chain.size / (math.pi * damping)
     if share >= 1:
         raise NoSteadyStateError(
             f"collisions give more than damping takes: its size is {share:.3g} of the critical one"

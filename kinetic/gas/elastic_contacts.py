@@ -16,7 +16,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from crazybilliards.kinetic.exact.recursion import recursion_of, weights
+from crazybilliards.kinetic.exact.recursion import recursion_of
 from crazybilliards.kinetic.gas.cells import Cells
 from crazybilliards.kinetic.gas.mean_state import Medium
 from crazybilliards.kinetic.rods.places import at_temperature
@@ -58,8 +58,7 @@ def _of_rods(chain: Chain) -> tuple[Array, Array]:
         chain = chain.replace(size=_MOST)
     recursion, (place, force) = recursion_of(chain), np.empty((2, chain.size))
     for i in range(chain.size):
-        d, p, _ = recursion.distribution(i)
-        share = recursion.spacing * weights(d.size) * p
+        d, _, share, _ = recursion.distribution(i)
         place[i], force[i] = chain.reduced_anchors[i] + d @ share, chain.force(d) @ share
     at_wall = chain.temperature * recursion.distribution(0)[1][0] if chain.box else 0.0
     # From both ends inwards, so that rounding does not add up: the sum of all forces vanishes.

@@ -44,8 +44,7 @@ def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
     ----------
     theory
         A result of ``force_balance`` or ``hydrodynamics``, or a start of it, at one time or all.
-        One whose density is that of its rods already, as that of ``equilibrium``, ``steady_state``
-        and ``rod_by_rod``, is returned as it is.
+        One that has the density of its rods already is returned as it is.
 
     Returns
     -------
@@ -53,17 +52,15 @@ def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
         The same with ``density`` [1/R], which may have one peak for each rod, and ``label`` of the
         rods, and with their ``mean_displacement``, ``displacement_width`` [R] and, if there is a
         flow, ``mean_velocity``. Other profiles over x stay those of the fluid. Where peaks are
-        narrower than the spacing of x, the integral of the density is rough, and ``label``, which
-        ``smooth`` uses, counts the rods exactly. ``attrs["density_of"]`` is ``"rods"``. Of more
-        than 10 000 rods, or 3000 with a gap, which nobody resolves, it is ``"fluid"``, as the
-        density. The errors of the theory are 0 for ``force_balance`` by labels at restitution 1 and
-        NaN, not known, for others.
+        narrower than the spacing of x, the integral of the density is rough, and ``label`` counts
+        the rods exactly. ``attrs["density_of"]`` is ``"rods"``, or ``"fluid"``, as the density, of
+        more than 10 000 rods, or 3000 with a gap. The errors of the theory are 0 for
+        ``force_balance`` by labels at restitution 1 and NaN, not known, for others.
 
     Raises
     ------
     ValueError
-        For a simulation, a density that is smoothed or has no label, a grid that does not hold all
-        rods of the chain.
+        For a simulation, a density that is smoothed or has no label, a grid without all rods.
 
     Examples
     --------
@@ -76,9 +73,9 @@ def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
     chain = _check(theory)
     if theory.attrs.get("density_of") == OF_RODS or not are_resolved(chain):
         return theory
-    x, times = theory.x.values, np.atleast_2d(theory.label.values).shape[0]
-    at_times = [_at_one_time(chain, x, _slice(theory, k)) for k in range(times)]
-    leading = theory.label.dims[:-1]
+    x, leading = theory.x.values, theory.label.dims[:-1]
+    fluids = [theory.isel(time=k) for k in range(theory.sizes["time"])] if leading else [theory]
+    at_times = [_at_one_time(chain, x, fluid) for fluid in fluids]
     result = theory.copy()
     for name, (along, _) in at_times[0].items():
         values = np.array([moment[name][1] for moment in at_times])
@@ -111,10 +108,6 @@ def _check(theory: xr.Dataset) -> Chain:
     if "particle" in theory.dims:
         require_all_particles(theory, chain.size, "rod_by_rod")
     return chain
-
-
-def _slice(theory: xr.Dataset, time: int) -> xr.Dataset:
-    return theory.isel(time=time) if "time" in theory.label.dims else theory
 
 
 def _at_one_time(chain: Chain, x: Array, fluid: xr.Dataset) -> dict[str, tuple[str, Array]]:
@@ -152,6 +145,5 @@ def _errors(theory: xr.Dataset, chain: Chain) -> dict[str, Any]:
     """Return the errors to state, of the kinds that the theory states."""
     by_labels = json.loads(theory.attrs["provenance"]).get("theory") == BY_LABELS
     exact = by_labels and not math.isnan(theory.attrs.get("density_model_error", math.nan))
-    accuracy = expected("equilibrium", chain) if exact else Accuracy()
-    stated = accuracy.named()
+    stated = (expected("equilibrium", chain) if exact else Accuracy()).named()
     return {name: value for name, value in stated.items() if name in theory.attrs}

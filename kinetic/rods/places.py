@@ -123,7 +123,7 @@ def rods_of(chain: Chain, points: LabelledPoints, temperature: float) -> RodPlac
     inner = inside == score
     at_rest = rest.places.copy()
     for beyond, end in zip((score < inside, score > inside), points.ends, strict=True):
-        at_rest[beyond] = _place_at_rest(cold, end)
+        at_rest[beyond] = stationary(cold).unit * stationary(cold).at(ndtr(end) - 0.5)
     stretch = np.where(inner, slope / slope_at_rest, 1.0)
     return _mapped(rest, rest.places + (places - at_rest), stretch)
 
@@ -168,7 +168,7 @@ def elastic_rods(chain: Chain) -> RodPlaces:
     recursion, L = recursion_of(chain), chain.size
     rods = RodPlaces(*np.empty((4, L, _NODES)))
     for i in range(L):
-        d, p, _ = recursion.distribution(i)
+        d, p, _, _ = recursion.distribution(i)
         likely = np.flatnonzero(p > _TAIL * p.max())
         d, p = d[likely[0] : likely[-1] + 1], p[likely[0] : likely[-1] + 1]
         curve = CubicSpline(d, p)
@@ -201,11 +201,6 @@ def _scores_at_rest(chain: Chain) -> tuple[Array, Array]:
     beyond = np.maximum(0.5 - np.abs(label), np.finfo(float).tiny)
     score = -np.sign(label) * ndtri(beyond)
     return score, s * _normal(score) * np.exp(-np.maximum(log_density, -600.0))
-
-
-def _place_at_rest(chain: Chain, score: float) -> float:
-    eta = stationary(chain).at(np.array([ndtr(score) - 0.5]))
-    return stationary(chain).unit * float(eta[0])
 
 
 def _normal(score: Array) -> Array:

@@ -28,11 +28,10 @@ N-th anchor, so <dx> = x - (2R + g)(N - L/2) with N' = rho
 the paper's ``modeleq`` at V = 0. It is closed by labels in
 :mod:`crazybilliards.kinetic.statics.variable_temperature` (scikit-fem).
 
-**Boundary conditions.** The paper gives none. By labels there are L rods, and the density falls to
-zero on both sides: N(-inf) = 0, N(+inf) = L. In a box N(-X/2) = 0 and N(X/2) = L, and no other
-condition: the force on a wall is the pressure rho m W^2/(1 - 2 R rho) there. With a prescribed
-displacement there are L rods in the interval of its profile, or in the box. An arctanh ends at a
-place where the density is small but not zero.
+**Boundary conditions.** The paper gives none. By labels N(-inf) = 0 and N(+inf) = L, in a box
+N(-X/2) = 0 and N(X/2) = L, and no other: the force on a wall is the pressure
+rho m W^2/(1 - 2 R rho) there. With a prescribed displacement there are L rods in the interval of
+its profile, or in the box. An arctanh ends where the density is small but not zero.
 
 **Two masses** have the same density at the same temperature T = m W^2, with their mean mass m.
 """
@@ -83,13 +82,14 @@ def force_balance(
         ``density``, ``label`` and ``displacement`` over x, by labels also ``mean_displacement``
         and ``velocity_width`` over particle, and in a box ``wall_force`` over wall, which is exact
         at restitution 1 without a gap or without springs. ``attrs["residual"]`` is the relative
-        error of the number of rods. By labels there are also the errors of the theory itself, its
-        distance from the exact equilibrium for chains like this one: 2 to 1000 rods, linear
-        springs, gaps up to 10 s, e = 1. ``attrs["density_model_error"]`` is the largest error of
-        the smoothed density, relative to close packing, ``attrs["mean_displacement_model_error"]``
-        that of ``mean_displacement`` in thermal lengths. In a box without a gap or without springs
-        the density is off by up to 0.18 within a rod length of the walls, where the rods have
-        layers. For others the errors are NaN, with an ``UnmeasuredWarning``.
+        error of the number of rods.
+
+        By labels there are also the distances from the exact equilibrium for chains like this one
+        (2 to 1000 rods, linear springs, gaps up to 10 s, e = 1):
+        ``attrs["density_model_error"]``, of the smoothed density, relative to close packing, and
+        ``attrs["mean_displacement_model_error"]`` in thermal lengths. In a box without a gap or
+        without springs the density is off by up to 0.18 near the walls, where the rods have layers.
+        For others the errors are NaN, with an ``UnmeasuredWarning``.
 
     Raises
     ------

@@ -12,7 +12,7 @@ and the strength of the springs K = (l/s)^n, which is 1 without walls, the right
 
     P' = -K u |u|^(n-2),      nu' = exp(P),      nu = 0 at the centre,      nu = 1/2 far outside,
 
-or at the wall. No other condition holds there: the pressure on it follows. Since u' = 1 - Lam e^P,
+or at the wall. Since u' = 1 - Lam e^P,
 
     Lam e^P - P - K |u|^n/n = constant.
 
@@ -23,8 +23,7 @@ So e^P is a Wright omega function of u. With d = 1 - Lam e^P and the constant 1 
 where d > 0 if the rods spread, and d < 0 if the walls push them together. A root finder determines
 eps so that nu = 0 at u = 0. Deep inside a long chain with a gap there is a plateau with u = 0 and
 rho_y = 1/g, and eps is below what is told from 0. Without a gap Lam is set to 1e-12, and rho_y is L
-times the density of a rod that is alone. Without springs the anchors mean nothing, and rho_y is
-constant.
+times the density of a rod that is alone. Without springs rho_y is constant.
 """
 
 from __future__ import annotations
@@ -58,30 +57,51 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
     """Solve the force balance closed by labels; see ``force_balance``, which checks the chain."""
     state = stationary(chain)
     x = position_grid(chain, fluid_reach(chain))
-    density, label = state.fields(chain, x)
-    lattice = (2 * chain.radius + chain.lattice_gap) * (label - chain.size / 2)
     # The middle of rod i has the label i - 1/2.
     rods = state.unit * state.at(chain.rank / chain.size)
-    walls = {}
-    if chain.box:
-        walls["wall_force"] = ("wall", np.full(2, chain.temperature * state.at_walls * chain.size))
-    dataset = result(
+    dataset = closed_by_labels(
         chain,
-        {
-            **walls,
-            "density": ("x", density),
-            "label": ("x", label),
-            "displacement": ("x", x - lattice),
-            "mean_displacement": ("particle", rods - chain.reduced_anchors),
-            "velocity_width": ("particle", np.sqrt(chain.temperature / chain.rod_masses)),
-        },
-        coordinates={"x": x},
-        source="theory",
-        method={"theory": BY_LABELS},
+        x,
+        *state.fields(chain, x),
+        mean=rods - chain.reduced_anchors,
+        width=np.sqrt(chain.temperature / chain.rod_masses),
+        wall_force=np.full(2, chain.temperature * state.at_walls * chain.size),
+        theory=BY_LABELS,
         residual=state.residual,
     )
     dataset.attrs |= expected("force_balance", chain).named()
     return dataset
+
+
+def closed_by_labels(
+    chain: Chain,
+    x: Array,
+    density: Array,
+    label: Array,
+    *,
+    mean: Array,
+    width: Array,
+    wall_force: Array,
+    theory: str,
+    residual: float,
+) -> xr.Dataset:
+    """Return fields over x, mean displacements and velocity widths in the common vocabulary."""
+    lattice = (2 * chain.radius + chain.lattice_gap) * (label - chain.size / 2)
+    return result(
+        chain,
+        {
+            **({"wall_force": ("wall", wall_force)} if chain.box else {}),
+            "density": ("x", density),
+            "label": ("x", label),
+            "displacement": ("x", x - lattice),
+            "mean_displacement": ("particle", mean),
+            "velocity_width": ("particle", width),
+        },
+        coordinates={"x": x},
+        source="theory",
+        method={"theory": theory},
+        residual=residual,
+    )
 
 
 @dataclass(frozen=True)
@@ -188,8 +208,5 @@ def _closed_form(energy: Array, lam: float, side: float) -> tuple[Array, Array]:
 
 
 def fluid_reach(chain: Chain) -> float:
-    """Distance from the outer anchor beyond which the fluid at rest has no density [R].
-
-    The fluid's lattice of anchors ends half a cell, R + g/2, beyond the outermost anchor.
-    """
+    """Distance from the outer anchor, half a cell before its lattice ends, to the vacuum [R]."""
     return thermal_reach(chain) + chain.radius + chain.lattice_gap / 2

@@ -38,10 +38,8 @@ class Profile(NamedTuple):
 def read_displacement(chain: Chain, displacement: Prescribed | None) -> Profile | None:
     """Turn any accepted form of <dx>(x) into a :class:`Profile`, or raise a ValueError.
 
-    None (displacements by labels) stays None.
-
-    A table is continued with slope 1 to either side. This is right outside the chain, where the
-    displacement of the outermost rod grows as its position.
+    None (displacements by labels) stays None. A table is continued with slope 1 to either side, as
+    outside the chain the displacement of the outermost rod grows like its position.
     """
     if displacement is None:
         return None

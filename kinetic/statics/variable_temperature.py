@@ -10,15 +10,13 @@ free chain, w = W^2(x)/W^2, B = 2 R L/s and Lam = g L/s. Equation (***) of
 with n = rho s/L. One more derivative removes the label:
 
     ((w + B exp(P)) P')' = -1 + (B + Lam) n,
-    flux (w + B exp(P)) P' = -x +- (B + Lam)/2 at the far ends: all rods lie in between.
-
-At walls the flux has the same value, with x of the wall, because all rods lie in between. Without
-springs the pressure is constant, and the number of rods determines it.
+    flux (w + B exp(P)) P' = -x +- (B + Lam)/2 at the far ends or walls: all rods lie in between.
 
 Weak form, for all test functions v: int (w + B e^P) P' v' + int ((B + Lam) n - 1) v = [flux v].
 
-A Newton step may change the pressure by a factor e^2 at most, except in the far tails. The mesh is
-fine at the edges of the stationary state of the free chain and is then adapted to the solution.
+Without springs the pressure is constant, and the number of rods determines it. A Newton step may
+change the pressure by a factor e^2 at most, except in the far tails. The mesh is fine at the edges
+of the stationary state of the free chain and is then adapted to the solution.
 """
 
 from __future__ import annotations
@@ -34,14 +32,15 @@ from scipy.sparse.linalg import splu
 from skfem import Basis, BilinearForm, ElementLineP2, LinearForm, MeshLine
 from skfem.helpers import grad
 
-from crazybilliards.kinetic.statics.label_closure import stationary
+from crazybilliards.kinetic.statics.label_closure import closed_by_labels, stationary
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid
-from crazybilliards.model.vocabulary import result
 
 Warmth = Callable[[Array], Array]
+
+_THEORY = "force balance, by labels, prescribed velocity variance"
 
 _CELLS = 1200
 _MESHES = 3
@@ -155,10 +154,7 @@ def _labels(basis: Basis, P: Array, warmth: Warmth, crowd: float) -> Array:
 
 
 def _adapted(basis: Basis, P: Array, label: Array, crowd: float, warmth: Warmth) -> Array:
-    """Return the same number of vertices, spread over free room, pressure and temperature.
-
-    On a plateau, far from changes of pressure or temperature, the free room has less weight.
-    """
+    """Return as many vertices, spread over free room (less on a plateau) and changes of P and w."""
     x = basis.mesh.p[0]
     w, alive = warmth(x), np.maximum(P[basis.nodal_dofs[0]], P.max() - _DEAD)
     width = np.diff(x - crowd * label) / np.sqrt((w[1:] + w[:-1]) / 2)
@@ -181,7 +177,7 @@ def _assemble(
     crowd = 2 * chain.radius * L / s
 
     def share(x: Array) -> Array:
-        """Return n = rho s/L."""
+        """Return n."""
         pressure = np.exp(log_pressure(x))
         return np.asarray(pressure / (warmth(x) + crowd * pressure))
 
@@ -190,32 +186,21 @@ def _assemble(
     farthest = s * vertices[-1] - float(chain.anchors[-1])
     x = position_grid(chain, farthest)
     within = np.clip(x / s, vertices[0], vertices[-1])
-    labels = L * np.clip(count(within), 0.0, 1.0)
-    displacement = x - (2 * chain.radius + chain.lattice_gap) * (labels - L / 2)
     # Displacements are computed by label: as differences of positions of many rods they would be
     # lost in rounding.
     shares, first = np.unique(label / label[-1] - 0.5, return_index=True)
     at_vertices = vertices[first] - (crowd + chain.lattice_gap * L / s) * shares
     mean = s * PchipInterpolator(shares, at_vertices)(chain.rank / L)
-    pressure = chain.temperature * L / s * np.exp(log_pressure(vertices[[0, -1]]))
-    return result(
+    free = chain.free_velocity_width * np.sqrt(chain.mass / chain.rod_masses)
+    return closed_by_labels(
         chain,
-        {
-            **({"wall_force": ("wall", pressure)} if chain.box else {}),
-            "density": ("x", np.where(within == x / s, share(within), 0.0) * L / s),
-            "label": ("x", labels),
-            "displacement": ("x", displacement),
-            "mean_displacement": ("particle", mean),
-            "velocity_width": (
-                "particle",
-                chain.free_velocity_width
-                * np.sqrt(chain.mass / chain.rod_masses)
-                * np.sqrt(warmth((chain.anchors + mean) / s)),
-            ),
-        },
-        coordinates={"x": x},
-        source="theory",
-        method={"theory": "force balance, by labels, prescribed velocity variance"},
+        x,
+        np.where(within == x / s, share(within), 0.0) * L / s,
+        L * np.clip(count(within), 0.0, 1.0),
+        mean=mean,
+        width=free * np.sqrt(warmth((chain.anchors + mean) / s)),
+        wall_force=chain.temperature * L / s * np.exp(log_pressure(vertices[[0, -1]])),
+        theory=_THEORY,
         residual=abs(label[-1] - 1),
     )
 
@@ -236,23 +221,15 @@ def _between_walls(chain: Chain, variance: Profile) -> xr.Dataset:
     grid = position_grid(chain)
     within = np.clip(grid, -end, end)
     hot = np.asarray(variance.function(within), dtype=float)
-    counted = L * np.clip(PchipInterpolator(x, label / label[-1])(within), 0.0, 1.0)
     rods = np.interp(np.arange(L) + 0.5, L * label / label[-1], x)
-    return result(
+    return closed_by_labels(
         chain,
-        {
-            "wall_force": ("wall", np.full(2, chain.mean_mass * p)),
-            "density": ("x", np.where(within == grid, p / (hot + 2 * R * p), 0.0)),
-            "label": ("x", counted),
-            "displacement": ("x", grid - (2 * R + chain.lattice_gap) * (counted - L / 2)),
-            "mean_displacement": ("particle", rods - chain.anchors),
-            "velocity_width": (
-                "particle",
-                np.sqrt(chain.mean_mass / chain.rod_masses * np.asarray(variance.function(rods))),
-            ),
-        },
-        coordinates={"x": grid},
-        source="theory",
-        method={"theory": "force balance, by labels, prescribed velocity variance"},
+        grid,
+        np.where(within == grid, p / (hot + 2 * R * p), 0.0),
+        L * np.clip(PchipInterpolator(x, label / label[-1])(within), 0.0, 1.0),
+        mean=rods - chain.anchors,
+        width=np.sqrt(chain.mean_mass / chain.rod_masses * np.asarray(variance.function(rods))),
+        wall_force=np.full(2, chain.mean_mass * p),
+        theory=_THEORY,
         residual=abs(label[-1] / L - 1),
     )

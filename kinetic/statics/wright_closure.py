@@ -74,15 +74,12 @@ def solve_wright_closure(chain: Chain, profile: Profile) -> xr.Dataset:
     values = density(constant, PchipInterpolator(edges, at_edges)(within))
     displacement = np.zeros(grid.size)  # beyond the profile
     displacement[inside] = profile.function(grid[inside])
-    walls = {}
-    if chain.box:
-        crowd = 1 - 2 * chain.radius * ends
-        forces = np.where(abs(edges[[0, -1]]) == chain.box / 2, chain.temperature * ends / crowd, 0)
-        walls["wall_force"] = ("wall", forces)
+    pressure = chain.temperature * ends / (1 - 2 * chain.radius * ends)
+    forces = np.where(abs(edges[[0, -1]]) == chain.box / 2, pressure, 0)
     return result(
         chain,
         {
-            **walls,
+            **({"wall_force": ("wall", forces)} if chain.box else {}),
             "density": ("x", np.where(inside, values, 0.0)),
             "label": ("x", np.interp(within, edges, np.append(0.0, rods))),
             "displacement": ("x", displacement),
