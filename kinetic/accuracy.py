@@ -1,15 +1,11 @@
 """What the theories state of themselves: their errors against simulations or exact solutions.
 
 They are errors of the theories, not of their numerical solutions, and are read from the tables in
-``kinetic/measured``, which
-
-    python -m studies.stationary_errors FOLDER
-    python -m studies.force_balance
-    python -m studies.relaxation_error FOLDER
-
-have written. A stated error is a measured one plus two of its standard errors: for ``steady_state``
-the largest of the chains of its kind that are nearby, for ``force_balance`` that of the measured
-chains on all sides, and in time that of all chains in a range of L (1 - e). It is NaN beyond them.
+``kinetic/measured``, which ``studies/stationary_errors.py``, ``studies/force_balance.py`` and
+``studies/relaxation_error.py`` have written. A stated error is a measured one plus two of its
+standard errors: for ``steady_state`` the largest of the chains of its kind that are nearby, for
+``force_balance`` that of the measured chains on all sides, and in time that of all chains in a
+range of L (1 - e). It is NaN beyond them.
 """
 
 from __future__ import annotations
@@ -70,10 +66,7 @@ def warn_if_unmeasured(theory: str, error: float) -> None:
 
 
 def expected(theory: str, chain: Chain) -> Accuracy:
-    """Return the errors of a stationary theory, named by its function.
-
-    A theory that was never measured has no errors to state.
-    """
+    """Return the errors of a stationary theory, named by its function, if it was ever measured."""
     if theory == "equilibrium":
         return Accuracy(0.0, 0.0, 0.0, 0.0, 0.0, 0.0 if chain.box else math.nan)
     of = {"force_balance": _of_force_balance, "steady_state": _of_steady_state}

@@ -1,7 +1,5 @@
 """What theories ask of a chain, and of the times to solve for, checked in one place."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 
 import numpy as np
@@ -28,13 +26,10 @@ def require_chain(
 ) -> None:
     """Raise a ValueError with the reason if ``theory`` does not hold for this chain.
 
-    Every theory calls this once, before any work. A chain with a parameter that the theories do
-    not know passes only if that parameter has its default value.
-
-    ``theory`` is its name in the error. It needs restitution 1 (``elastic``; of the walls alone:
-    ``elastic_walls``), linear springs, no gap, or a steady state, where these are True. ``remedy``
-    says what to do for another restitution, at the end of that error. ``knows``: parameters beside
-    ``KNOWN`` that this theory takes; all others go on refusing them.
+    Every theory calls this once, before any work. ``theory`` is its name in the error. It needs
+    restitution 1 (``elastic``; of the walls alone: ``elastic_walls``), linear springs, no gap, or a
+    steady state, where these are True. ``remedy`` says what to do for another restitution.
+    ``knows``: parameters beside ``KNOWN`` that this theory takes. Others must have their defaults.
     """
     check_chain(chain)
     chain.require_known(theory, knows)
@@ -59,10 +54,7 @@ def require_chain(
 
 
 def output_times(duration: float | None, every: float | None, number: int) -> Array:
-    """Return the times 0, every, 2 every, ... up to the first one not before ``duration`` [t_0].
-
-    ``every`` None: ``number`` outputs after the start.
-    """
+    """Return 0, every (None: duration/number), ... up to ``duration`` or the next time [t_0]."""
     duration = check_real("duration", duration, positive=True)
     every = duration / number if every is None else check_real("every", every, positive=True)
     if every > duration * (1 + 1e-9):

@@ -1,9 +1,7 @@
 r"""Starts of the hydrodynamics: checks given profiles, and makes common ones.
 
 A start is a result with ``density`` over x (one time), and optionally ``label``, ``flow_velocity``
-and ``velocity_variance``. ``force_balance`` of another chain gives a quench. The functions here
-make other common starts: from the stationary state that the chain has at restitution 1, and gases
-of points in a box.
+and ``velocity_variance``. ``force_balance`` of another chain gives a quench.
 """
 
 from __future__ import annotations
@@ -45,8 +43,7 @@ def displaced(chain: Chain, shift: float) -> xr.Dataset:
 def compressed(chain: Chain, factor: float) -> xr.Dataset:
     """Return the stationary state at restitution 1, with y multiplied by ``factor`` > 0.
 
-    y = x - 2 R (N - L/2) is the reduced coordinate.
-    Rods never overlap, because only the free room between them shrinks (or grows).
+    Only the free room between rods shrinks or grows: y = x - 2 R (N - L/2).
     """
     return _stationary_image(chain, stretch=check_real("factor", factor, positive=True))
 

@@ -23,7 +23,7 @@ from crazybilliards.kinetic import (
 )
 from crazybilliards.kinetic.exact.breathing import breathing_cloud
 from crazybilliards.kinetic.exact.points import gas_of_points, points_of
-from crazybilliards.kinetic.fluids.one_mass import has_one_mass
+from crazybilliards.kinetic.fluids.stated_errors import has_one_mass
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.starts import gathered, wave
 from crazybilliards.model import Chain, chain_of

@@ -11,8 +11,8 @@ and
 
     (W^2)' = -2 W^2 sigma'/sigma - (2 gamma/m) W^2 + A^2/m^2.
 
-This is also the exact motion of the rods themselves at restitution 1. Relabelled when they collide,
-they are independent damped oscillators, whose covariance obeys the same equations.
+This is also the exact motion of the rods themselves at restitution 1: relabelled when they collide,
+they are independent damped oscillators.
 """
 
 from __future__ import annotations

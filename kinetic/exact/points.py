@@ -13,8 +13,6 @@ with the cosine coefficients a_q of the start. Points that start independently s
 :func:`crazybilliards.kinetic.rod_by_rod` makes rods of them.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from scipy.fft import dct, idct

@@ -6,8 +6,6 @@ Within a cell the logarithm of the integrand is a parabola, which stays accurate
 changes by large factors. Sums over the grid have Gregory's weights of fourth order at the walls.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -125,10 +123,7 @@ def recursion_of(chain: Chain) -> Recursion:
 
 
 def _log_cumulative(phi: Array, number: int) -> Array:
-    """Logarithm of the integral of f = exp(phi) on a uniform grid, from its first node on.
-
-    Where f is 0 at this node, at t = 0, it begins as t^number, whose integral is then exact.
-    """
+    """Logarithm of the integral of f = exp(phi) from t = 0, where f may begin as t^number, on."""
     from_zero = phi[0] == -np.inf
     cells = _log_cells(np.append(phi[1] if from_zero else phi[0], phi[1:]))
     if from_zero:
@@ -143,8 +138,7 @@ def _log_cumulative(phi: Array, number: int) -> Array:
 def _log_cells(phi: Array) -> Array:
     """Logarithms of the integrals of exp(phi) over the cells of a uniform grid.
 
-    The spacing is the unit of length. In each cell phi is the parabola through its ends with the
-    curvature c of the neighbourhood:
+    In each cell phi is the parabola through its ends with the curvature c of the neighbourhood:
     int_0^1 exp(a t - c t(1-t)/2) dt = exp(a/2) sinh(a/2)/(a/2) exp(-c r(a)/2) + O(c^2), where
     r = (a coth(a/2) - 2)/a^2 is the mean of t(1-t) under exp(a t).
     """

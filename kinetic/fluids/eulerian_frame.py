@@ -16,8 +16,6 @@ have a fixed length, which resolves the speed that the springs give the rods. If
 the solution is computed again with half the step.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -65,11 +63,7 @@ def solve_on_positions(
     exchange: float,
     progress: bool,
 ) -> FlowFields:
-    """Solve from a start with ``number`` cells, by Runge-Kutta steps of py-pde.
-
-    ``variance``: W^2(x) if prescribed; ``displacement``: <dx>(x) if frozen. ``exchange`` is
-    m Gamma_T/gamma.
-    """
+    """Solve from a start with ``number`` cells; ``exchange`` is m Gamma_T/gamma."""
     for wider in (1.0, 1.6, 2.5, 4.0):
         faces = make_faces(chain, start, times[-1], number, wider)
         fields = starting_fields(chain, start, faces, thermal=thermal)

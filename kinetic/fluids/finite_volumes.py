@@ -9,8 +9,6 @@ balances there. No flux passes the outermost faces, but for the momentum at wall
 that between the flow and its mirror image.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -81,8 +79,7 @@ def primitive(fields, constants):  # type: ignore[no-untyped-def]
     """Return ln p, V and ln W^2, (M, 3); with an energy, W^2 follows from it.
 
     p and W^2 are in units of ``dilute * heat`` and ``heat``, so that the bits of the logarithms are
-    the same in all units of length and time. In a vacuum the quotients would be rounding errors.
-    There V = 0 and W^2 is the given one.
+    the same in all units of length and time. In a vacuum V = 0 and W^2 is the given one.
     """
     _, _, variance, _, _, rod, _, _, _, _, _, heat, dilute, _ = constants
     cells = fields.shape[1]

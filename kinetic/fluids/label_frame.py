@@ -30,14 +30,11 @@ remains after a limited linear reconstruction, which vanishes for smooth flows. 
 its work becomes heat.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
 
-from crazybilliards.kinetic.fluids.label_cells import LabelCells, make_cells, mirrored
-from crazybilliards.kinetic.fluids.label_positions import on_positions
+from crazybilliards.kinetic.fluids.label_cells import LabelCells, make_cells, mirrored, on_positions
 from crazybilliards.kinetic.fluids.label_rates import CLOSEST, Constants, label_rate
 from crazybilliards.kinetic.fluids.pde_solver import FlowFields, solve
 from crazybilliards.kinetic.gas.collision_moments import decay_of_two_masses, moments_of_collisions
@@ -185,11 +182,7 @@ def _breakdown(cells: LabelCells, values: Array) -> str:
 def _starting_fields(
     chain: Chain, cells: LabelCells, state: Stationary, start: Start, *, thermal: bool
 ) -> dict[str, Array]:
-    """Put a start on the cells.
-
-    A cell is a weighted mean of two points in it, with the weights of the stationary state. A
-    shifted or stretched stationary state then starts exactly.
-    """
+    """Put a start on the cells, each a weighted mean of two points, as in the stationary state."""
     s, W, L = state.unit, chain.free_velocity_width, chain.size
     own = slice(1, -1) if chain.box else slice(None)
 

@@ -5,8 +5,6 @@ two cells and kappa the share of the rods that belongs to a face. The pressure's
 flux move energy between cells and faces without loss.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -70,8 +68,7 @@ def _flux_rate(q, cell, constants):  # type: ignore[no-untyped-def]
 def label_rate(fields, constants):  # type: ignore[no-untyped-def]
     """Rates of change of (eta, V) or, with a temperature, of (eta, V, S, q).
 
-    ``fields`` has the shape (2 or 4, M). S of the face right of a cell is stored at the cell, in
-    units in which it is the distance at rest squared where theta = 1. Its last value is not used.
+    ``fields`` has the shape (2 or 4, M). S of the face right of a cell is stored at the cell.
     """
     labels, shares, kappa, distance, lam, stiffness, damping, heating = constants[:8]
     loss, _, walled, exponent = constants[8:]

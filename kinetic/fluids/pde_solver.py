@@ -5,8 +5,6 @@ provides the grid, the fields, the time steppers, trackers and storage. The inte
 because trackers that read the clock would make two equal runs differ.
 """
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -57,11 +55,8 @@ class Flow(PDEBase):
         return self.rate
 
     def evolution_rate(self, state: Any, t: float = 0) -> Any:
-        """Return the rates of change, in what has of py-pde's fields only the attribute it reads.
-
-        Fields take longer to make than most rates. The values lie in an array with cells around
-        them, for which a rate would be compiled once more.
-        """
+        """Return the rates in what has of py-pde's fields, which are slow, what it reads."""
+        # The values lie in an array with cells around them, for which a rate would compile again.
         return _Rates(self.rate(np.ascontiguousarray(state.data), t))
 
 

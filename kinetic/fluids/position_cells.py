@@ -1,7 +1,5 @@
 """The grid of positions of :mod:`.eulerian_frame`, and the fields that it starts from."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -48,11 +46,7 @@ def make_faces(
 
 
 def _finest(chain: Chain, start: Start, duration: float, populated: NDArray[np.bool_]) -> float:
-    """Return the length that cells have to resolve [R].
-
-    It is the thermal length, or less if the spring is so soft that the rods, or the waves that a
-    steep place of the start sends out, are short against it.
-    """
+    """Return the thermal length or, if shorter, that of all rods or of a steep start's waves."""
     rods = float(np.ptp(start.x[populated]))
     density, slope = (np.abs(start.label(start.x[populated], order)).max() for order in (1, 2))
     steep = float(density / slope) if slope > 0 else math.inf

@@ -1,11 +1,8 @@
 r"""The steady state of the gas: mean state and fluctuations in agreement.
 
-The mean state needs the strength of collisions and the motion that neighbourhoods share
-(:mod:`.closure`), which follow from the fluctuations about it (:mod:`.fluctuations`). Both are
-solved in turn until they agree.
+The mean state needs the strength of collisions and shared motion (:mod:`.closure`), which follow
+from the fluctuations about it (:mod:`.fluctuations`). Both are solved in turn until they agree.
 """
-
-from __future__ import annotations
 
 from typing import NamedTuple
 
@@ -73,8 +70,7 @@ def mean_field(chain: Chain, cells: Cells) -> Steady:
 def in_agreement(chain: Chain, cells: Cells) -> Steady:
     """Bring mean state and fluctuations of a chain with e <= 1 to agreement.
 
-    A state without correlations is too far from long chains at small restitutions: the iteration
-    fails there. It goes by way of larger restitutions, from each to the next.
+    At small restitutions the iteration would fail if it did not go by way of larger ones.
     """
     closure, iterations = Closure.of_mean_field(cells.contacts), 0
     descriptions = Descriptions(chain, cells)
@@ -102,10 +98,7 @@ def in_agreement(chain: Chain, cells: Cells) -> Steady:
 
 
 def _displaced(background: Background) -> PairCovariance:
-    """Return h'; raise if the state is not stable.
-
-    It varies slowly along the chain, and its equation takes longer: fewer cells are enough.
-    """
+    """Return h', which varies slowly, on fewer cells; raise if the state is not stable."""
     size, walled = background.medium.size, background.cells.walled
     coarse = background.on(make_cells(size, _CELLS_OF_DISPLACEMENTS, walled=walled))
     relaxing, displaced = relaxing_pairs(coarse)

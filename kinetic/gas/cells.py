@@ -4,8 +4,6 @@ Up to ``MOST`` rods a cell is one rod. Longer chains have cells of several rods 
 correlations reach far, and of one at the ends.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -18,10 +16,7 @@ _SCORES, _POINTS = 5.5, 320
 
 
 class Cells(NamedTuple):
-    """M cells of a chain, and its K contacts: M - 1 of cells, and two at walls if there are any.
-
-    All lengths are counted in rods.
-    """
+    """M cells and K contacts, M - 1 of cells and two at any walls; lengths are counted in rods."""
 
     rods: Array  # number of rods in each, shape (M,)
     centres: Array  # label of each, from 0 to L, shape (M,)
@@ -92,12 +87,10 @@ def at_distance(
 ) -> Array:
     """Return the covariance at a short distance, continued from that of different cells.
 
-    Along a line across the diagonal: through the covariances of cells ``nearest`` and one more
-    apart. What lies closer is left out: on the diagonal is what cells add of their own, and next
-    to it what the last collision of two neighbours left.
-
-    ``covariance``, symmetric, shape (M, M), M > nearest + 1, is that of fields at ``places``. The
-    pairs have their middles at ``wanted`` and are ``distance`` rods apart.
+    It lies on a line across the diagonal through those of cells ``nearest`` and one more apart: on
+    the diagonal is what cells add of their own, and next to it what the last collision left.
+    ``covariance``, (M, M), M > nearest + 1, is that of fields at ``places``. The pairs have their
+    middles at ``wanted`` and are ``distance`` rods apart.
     """
     symmetric = (covariance + covariance.T) / 2
     near_middle, near_apart, near = _side_diagonal(symmetric, places, nearest)
@@ -110,11 +103,8 @@ def at_distance(
 def of_rods(covariance: Array, cells: Cells) -> Array:
     """Return the covariances of the rods i and i + r, shape (L, L), over i and r from 0.
 
-    ``covariance`` is that of the fields of cells, symmetric, shape (M, M).
-
-    Along a line across the diagonal they are linear between those of different cells, and continued
-    to r = 0 as :func:`at_distance` does. If every cell is one rod, they are the given ones from
-    r = 1 on. Where i + r lies beyond the chain there is NaN.
+    Along a line across the diagonal they are linear between the given ones of different cells,
+    (M, M), and continued to r = 0 by :func:`at_distance`. Beyond the chain there is NaN.
     """
     size, symmetric = round(cells.rods.sum()), (covariance + covariance.T) / 2
     middles = np.arange(1, 2 * size) / 2

@@ -7,9 +7,8 @@ neighbourhood, so
 
     W_v^2 = T + K h_uu,      noise of the mean state:  2 Gamma (1 - K h_uu) in place of 2 Gamma.
 
-What feeds the mean state and the collective motion adds up to the noise that there is. For the
-centre of mass alone, K h_uu = 1/L. Without springs nothing pulls a neighbourhood back, and it
-shares no motion of this kind.
+For the centre of mass alone, K h_uu = 1/L. Without springs nothing pulls a neighbourhood back, and
+it shares no motion of this kind.
 
 **What collisions take.** With w the speed at which rods meet, a collision has the impulse
 (1 + e) w/2 and takes (1 - e^2) w^2/2 from the sum of v^2. So with the means over the collisions of
@@ -17,11 +16,10 @@ a contact
 
     Lambda = (1 - e) P <w^2>/<w> = (4/sqrt(pi)) (1 - e) P K F sqrt(Theta),
 
-the density being gone. Theta = W_v^2 - h_c is the relative temperature of all neighbours, h_c being
-their covariance. K(e) of :mod:`.contact_speeds` says how much slower they are when they meet.
-
-h_c is the mean of two values: with what the last collision of the two left, and without it, which
-is continued from pairs of rods further apart. Half of all neighbours leave one another.
+where Theta = W_v^2 - h_c is the relative temperature of all neighbours and h_c their
+covariance. K(e) of :mod:`.contact_speeds` says how much slower they are when they meet. h_c is the
+mean of two values: with what the last collision of the two left, as half of all neighbours leave
+one another, and without it, continued from pairs of rods further apart.
 
 **Clustering.** P goes like Theta/g and Lambda like Theta^(3/2)/g, with g and Theta of the
 neighbourhood, which fluctuate. To second order in the relative deviations their ratio has the mean
@@ -54,10 +52,7 @@ _LEAST = 0.02  # bound of Theta/T, b and 1 - K h_uu on the way; at the end they 
 
 
 class Closure(NamedTuple):
-    """The unknowns that mean state and fluctuations must agree on, at the M - 1 contacts.
-
-    All are 0 in the mean field.
-    """
+    """The unknowns to agree on, at the M - 1 contacts, which are 0 in the mean field."""
 
     shared: Array  # h_c/W_v^2
     collective: Array  # K h_uu

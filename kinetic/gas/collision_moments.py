@@ -15,9 +15,8 @@ H3(v) = v^3 - 3v these numbers are the noise of the pair correlations:
     energy          -< |v-u| (v*^2 + u*^2 - v^2 - u^2)/2 > = [v, u] = (2/sqrt(pi)) (1 - e^2),
     temperature     [H2, H2],         heat      [H3, H3],       velocity_heat   [v, H3].
 
-That the first two expressions are equal is conservation of momentum: the energy that a collision
-takes from the two points goes into their covariance. The decay of the third moment is the linear
-response of <H3> to a distribution with the weight 1 + <H3> H3/6:
+The first two expressions are equal because a collision conserves momentum. The decay of the third
+moment is the linear response of <H3> to a distribution with the weight 1 + <H3> H3/6:
 
     decay = -< |v-u| (H3(v*) - H3(v)) (H3(v) + H3(u))/6 >.
 
@@ -33,8 +32,6 @@ temperatures,
 
     decay = -< |v/sqrt(m) - u/sqrt(M)| (H3(v*) + H3(u*) - H3(v) - H3(u)) (H3(v) + H3(u)) >/12.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Callable

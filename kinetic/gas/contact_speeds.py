@@ -2,9 +2,8 @@ r"""How fast neighbours are when they meet, next to how fast they are on average
 
 If the relative velocities of rods that meet were Gaussian, with the variance 2 Theta of all
 neighbours, then <w^2>/<w> over the collisions of a contact would be (4/sqrt(pi)) sqrt(Theta).
-Inelastic neighbours meet more slowly, because a collision takes their relative velocity and both
-noise and pressure must give it anew. The ratio follows from the motion of one pair. Its rods have
-the distance r > 0 and the relative velocity w,
+Inelastic neighbours meet more slowly, because a collision takes their relative velocity. The ratio
+follows from the motion of one pair with the distance r > 0 and the relative velocity w,
 
     r' = w,      w' = -Gamma_e w - 2P + noise,      w -> -e w where r = 0.
 
@@ -26,8 +25,6 @@ stationary density of (r, w) then gives
 
 studies/contact_speeds.py solves for it by finite volumes. K(1) = 1 is exact.
 """
-
-from __future__ import annotations
 
 import math
 

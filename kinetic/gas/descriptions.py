@@ -5,10 +5,9 @@ velocities hand them on, and at e = 1 a velocity belongs to a point, which passe
 rod. Rod i then has the mean over the labels at which the i-th of L points is found,
 Beta(i, L + 1 - i).
 
-Both are the same equations (:mod:`.mean_state`), on cells of a rod and on cells much smaller than
-one. They agree inside a chain. At its open ends points are too cold for e < 1, and rods too hot.
-Chains with open ends and without a gap therefore have the mean of both. A gap keeps rods at their
-labels, and so do walls.
+Both have the same equations (:mod:`.mean_state`), on cells of a rod and on much smaller ones, and
+agree inside a chain. At its open ends points are too cold for e < 1, and rods too hot. Chains with
+open ends and without a gap therefore have the mean of both. Gaps and walls keep rods at labels.
 
 **Forces.** Without a gap, or without springs, the points are exchangeable, and both descriptions
 have their forces: at the contact of the rods i and i + 1
@@ -18,8 +17,6 @@ have their forces: at the contact of the rods i and i + 1
 over Beta(i, L - i) and Beta(i + 1, L - i + 1) of the label, i = 0 and L being walls. At e = 1 they
 are exact. With a gap :mod:`.elastic_contacts` has what springs carry.
 """
-
-from __future__ import annotations
 
 from typing import NamedTuple
 

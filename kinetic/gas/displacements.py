@@ -15,8 +15,6 @@ with the force P ~ g^-alpha of a gas that cools. h_gg of neighbouring gaps and t
 which squares of waves relax, follow from h' itself.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from crazybilliards.kinetic.gas.cells import at_distance, means
@@ -54,10 +52,7 @@ def relaxing_pairs(state: Background) -> tuple[LinearResponse, PairCovariance]:
 
 
 def _with_stress(state: Background, gaps: Array, tau: float) -> LinearResponse:
-    """Return the response with the right source and with S, in units of P, at the contacts.
-
-    ``gaps``: h_gg of neighbouring gaps.
-    """
+    """Return the response with the right source and with S/P; ``gaps``: h_gg of neighbours."""
     cells, loss, plain = state.cells, state.loss, linear_response(state)
     cooling = 2 * state.medium.damping * state.temperature
     alpha = (loss / 2 + cooling) / (1.5 * loss + cooling)

@@ -12,10 +12,9 @@ order in lambda
 
 For uniform granular media such a drag is that of D. Benedetto, E. Caglioti and M. Pulvirenti (RAIRO
 Modél. Math. Anal. Numér. 31, 615, 1997). A point that meets L slow ones has its velocity multiplied
-by (1 - lambda)^L, and the drag does the same with this kappa, which is lambda L to first order. It
-was chosen beside simulations: lambda L itself is as good for 100 rods, but 10 rods are too hot with
-it. The noise of random encounters is left out: a fast point meets each other point exactly once on
-its way through the cloud.
+by (1 - lambda)^L, as by the drag with this kappa. To first order that is lambda L, with which 10
+rods are too hot beside simulations. The noise of random encounters is left out: a fast point meets
+each other point exactly once on its way through the cloud.
 
 **Units.** Velocities are in units of their own rms value S, as a multiple of the free W, and
 lengths in units of S s. The drag does not depend on the units, and the noise has the factor
@@ -123,8 +122,8 @@ class _Equation:
     def newton_step(self, f: Array, tau: float, made: float) -> tuple[Array, float, float]:
         """Return the changes of f, of tau, and of the points made.
 
-        The grid loses or makes a few points. A source of that strength, in the shape of the
-        Gaussian, takes the place of the equation that the others make superfluous.
+        The grid loses or makes a few points, for which a source in the shape of the Gaussian is the
+        unknown of the equation that the others make superfluous.
         """
         v, cells = self.v, f.size
         push = f @ self.kernel.T
@@ -161,10 +160,7 @@ class _Equation:
 
 
 def driven_points(chain: Chain) -> DrivenPoints:
-    """Solve for the points of a chain with e > 1 on linear springs, without a gap and walls.
-
-    Raises NoSteadyStateError where there is no state, or none that the grid resolves.
-    """
+    """Solve for the points, or raise NoSteadyStateError if the grid resolves no steady state."""
     damping, e = chain.relative_damping, chain.restitution
     share = (e - 1) * chain.size / (math.pi * damping)
     if share >= 1:

@@ -9,8 +9,6 @@ wells, where phi = 1 - v and v(x) is the variance of a rod over T/k at the spaci
 (``studies/elastic_lattice.py``).
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Fixed points by Anderson's acceleration."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Generic, NamedTuple, TypeVar
 

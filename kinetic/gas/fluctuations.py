@@ -28,15 +28,11 @@ Q is what collisions do to two independent rods, [psi, phi] of :mod:`.collision_
     g Theta:        Lambda g, as rods that are close by chance collide, and cool, more often.
 
 **The noise of the velocities** is exact in its sum. Noise feeds the total momentum with 2 Gamma W^2
-per rod, collisions with nothing. The local part holds Theta of it, which damping takes out at the
-rate 2 Gamma Theta. What feeds h is the rest, 2 Gamma (W^2 - Theta), and with the energy of all
-rods, Gamma sum (W^2 - T) = sum Lambda/2, and Theta = T - h_c, that is Lambda + 2 Gamma h_c. The
-centre of mass then has the variance W^2/L whatever e is, as it must.
-
-**Where it sits.** A collision makes the covariance <v_i v_{i+1}> of two rods and takes from <v_i^2>
-and <v_{i+1}^2>, which the local part holds. So Lambda stands beside the diagonal: a contact adds
-half of it to (i, i + 1) and half to (i + 1, i). For waves that is the same as on the diagonal, at
-the border it is not.
+per rod, collisions with nothing. The local part takes out 2 Gamma Theta by damping. What feeds h is
+the rest, 2 Gamma (W^2 - Theta), and with the energy of all rods, Gamma sum (W^2 - T) =
+sum Lambda/2, and Theta = T - h_c, that is Lambda + 2 Gamma h_c. The centre of mass then has the
+variance W^2/L whatever e is. A collision makes the covariance <v_i v_{i+1}> of two rods. So Lambda
+stands beside the diagonal: a contact adds half of it to (i, i + 1) and half to (i + 1, i).
 """
 
 from __future__ import annotations
@@ -223,15 +219,11 @@ def _noise(state: Background) -> Array:
 
 
 def _displacements(state: Background) -> Array:
-    """Return the displacements of cells, (M, K), for a unit that each gap is longer.
-
-    Without walls the centre of mass is at rest. Between walls the other gaps give way evenly, by
-    the smallest change that keeps their sum.
-    """
-    if state.cells.walled:
+    """Return the displacements of cells, (M, K), for a unit that each gap is longer."""
+    if state.cells.walled:  # the other gaps give way evenly
         return np.asarray(np.linalg.pinv(state.steps))
     N = state.cells.rods
-    sums = np.tril(np.ones((N.size, N.size - 1)), -1)
+    sums = np.tril(np.ones((N.size, N.size - 1)), -1)  # the centre of mass stays at rest
     return np.asarray(sums - N @ sums / N.sum())
 
 

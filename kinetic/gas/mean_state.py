@@ -8,9 +8,8 @@ one between the outermost cells and the walls, with the mean gap g = dy/dl and T
     2 Gamma N (1 - h - T) = flux(right) - flux(left) + half of the loss at both contacts,
     flux = -3 n^2 T/r dT/dl,      n = P/T,            loss = a E n T^(3/2) dl.
 
-An elastic wall takes nothing: the rod at it loses energy at one contact only, and is hotter. At an
-inelastic one half of the velocities are smaller by e_w. There T = e_w T(incoming), because slow
-rods stay longer, and the loss is (1 - e_w) P sqrt(8/pi) sqrt(T/e_w).
+At a wall half of the velocities are smaller by e_w. There T = e_w T(incoming), because slow rods
+stay longer, and the loss is (1 - e_w) P sqrt(8/pi) sqrt(T/e_w).
 
 **Quadratic springs** have the mean force K <(x + u) |x + u|> where a place is displaced by x + u. x
 is its mean displacement, and u is Gaussian with the variance h_uu of neighbourhoods. A rod also has
@@ -161,8 +160,7 @@ def heated(
 ) -> tuple[Array, Balance]:
     """Balance the heat, beginning with the temperatures T of the cells.
 
-    ``forces``: the balance of the forces at temperatures. ``strength``: a at the M - 1 contacts,
-    of T there. ``shared``: h at the cells, what neighbourhoods share.
+    ``forces``: of temperatures. ``strength``: a, of T at the M - 1 contacts. ``shared``: h.
     """
     noise = 2 * medium.damping * cells.rods
     for _ in range(_MOST_TURNS):

@@ -7,19 +7,18 @@ have
     W_v(i)^2 = T(i) + K h_uu(i),       W_x(i)^2 = q(i)^2 + h'_uu(i),
 
 T being the temperature within their neighbourhood, K h_uu the velocity that a neighbourhood shares,
-q the width of a rod in its neighbourhood, and h'_uu the displacement of neighbourhoods
-(:mod:`.displacements`). Without a gap q is that of the i-th of L points, with a gap that of the
-elastic chain at the temperature of the rod.
+q the width of a rod in its neighbourhood (without a gap of the i-th of L points, with a gap in the
+elastic chain at its temperature), and h'_uu the displacement of neighbourhoods
+(:mod:`.displacements`).
 
 **The mean field** (``correlations=False``, and always for e > 1) takes colliding rods for
 independent. The noise drives the centre of mass as well, which collisions leave alone, so that
 
     W_v^2 = (1 - 1/L) T + 1/L,
 
-and the same for the displacements on linear springs. For e > 1 velocities have heavy tails, which a
-closure of moments does not know. On linear springs without a gap and walls T is therefore that of
-points in phase space (:mod:`.driven`). Other chains with e > 1 have the closure, which is too cold
-at the ends if the damping is above 0.6 sqrt(k m).
+and the same for the displacements on linear springs. For e > 1, on linear springs without a gap and
+walls, T is that of points in phase space (:mod:`.driven`). Other chains with e > 1 have the
+closure, which is too cold at the ends if the damping is above 0.6 sqrt(k m).
 """
 
 from __future__ import annotations
@@ -58,34 +57,30 @@ def steady_state(chain: Chain, *, correlations: bool = True) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Over particle ``velocity_width``, ``displacement_width`` and ``mean_displacement``;
-        ``density`` and ``label`` of the rods over x, and there ``displacement``,
-        ``velocity_variance`` and ``heat_flux`` of the gas; in a box ``wall_force`` over wall. Of
-        more than 10 000 rods, or 3000 with a gap, the density is that of a fluid
-        (``attrs["density_of"]``).
+        Over particle ``velocity_width``, ``displacement_width`` and ``mean_displacement``; over x
+        ``density`` and ``label`` of the rods (``attrs["density_of"]``: of more than 10 000, or 3000
+        with a gap, of a fluid), ``displacement``, ``velocity_variance`` and ``heat_flux`` of the
+        gas; in a box ``wall_force`` over wall.
 
-        With correlations, over ``contact`` (i with i + 1): ``neighbour_covariance``
-        <v_i v_{i+1}>, ``relative_temperature`` <(v_i - v_{i+1})^2>/2, ``contact_force`` and
-        ``contact_loss``, the power that collisions take; over ``mode`` the
-        ``mode_velocity_variance`` <|v_q|^2> of the waves cos(pi q (i - 1/2)/L), q = 0 being the
-        centre of mass; up to 1000 rods over (particle, separation) the ``velocity_covariance``
-        <v_i v_{i+r}>, NaN beyond the chain.
+        With correlations, over ``contact`` (i with i + 1): ``neighbour_covariance`` <v_i v_{i+1}>,
+        ``relative_temperature`` <(v_i - v_{i+1})^2>/2, ``contact_force`` and ``contact_loss``, the
+        power that collisions take; over ``mode`` the ``mode_velocity_variance`` <|v_q|^2> of the
+        waves cos(pi q (i - 1/2)/L), q = 0 being the centre of mass; up to 1000 rods over (particle,
+        separation) the ``velocity_covariance`` <v_i v_{i+r}>, NaN beyond the chain.
 
         ``attrs``: ``residual``, the largest disagreement of mean state and fluctuations, and
-        for e > 1 the share of points that the grid loses in a time m/gamma;
-        ``iterations``; and the errors of the theory in simulations of chains like this one, NaN
-        where none was measured: ``velocity_width_model_error`` and ``border_model_error``,
-        relative, of W_v of the particles 3 to L - 2 and of the first and the last;
-        ``displacement_width_model_error``, relative, of W_x; ``mean_displacement_model_error``, in
-        thermal lengths; ``density_model_error``, of the smoothed density, relative to close
-        packing; ``wall_force_model_error``, relative. An ``UnmeasuredWarning`` says that
-        ``velocity_width_model_error`` is not known.
+        for e > 1 the share of points that the grid loses in a time m/gamma; ``iterations``; and
+        the errors measured in simulations of chains like this one, or NaN:
+        ``velocity_width_model_error`` and ``border_model_error``, relative, of W_v of the particles
+        3 to L - 2 and of the first and the last; ``displacement_width_model_error``, relative;
+        ``mean_displacement_model_error``, in thermal lengths; ``density_model_error``, of the
+        smoothed density, relative to close packing; ``wall_force_model_error``, relative. An
+        ``UnmeasuredWarning`` says that the first of these is not known.
 
     Raises
     ------
     ValueError
-        For a chain without a steady state: without noise, damping, or springs and walls, or with
-        e > 1 and too many rods; for two masses; for absorbing walls; if mean state and
+        For a chain without a steady state; for two masses; for absorbing walls; if mean state and
         fluctuations cannot be brought to agree.
 
     Notes

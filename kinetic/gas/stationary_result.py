@@ -1,7 +1,5 @@
 """The steady state of the gas in the common vocabulary."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -20,8 +18,8 @@ from crazybilliards.kinetic.rods.places import (
     at_temperature,
     elastic_rods,
     exchangeable,
+    over_positions,
 )
-from crazybilliards.kinetic.rods.profiles import over_positions
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.grid import position_grid

@@ -10,8 +10,7 @@ import numpy as np
 import xarray as xr
 
 from crazybilliards.kinetic.accuracy import Accuracy, expected
-from crazybilliards.kinetic.rods.places import LabelledPoints, are_resolved, rods_of
-from crazybilliards.kinetic.rods.profiles import over_positions
+from crazybilliards.kinetic.rods.places import LabelledPoints, are_resolved, over_positions, rods_of
 from crazybilliards.kinetic.statics.label_closure import BY_LABELS
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import Array

@@ -11,11 +11,10 @@ i-th in order has
 This is exact at e = 1, in the steady state and, because points that exchange their names stay
 independent, at any time after an independent start.
 
-**With a gap** every rod has an anchor of its own. At e = 1 and rest the Gibbs measure has the exact
-p_i of the elastic chain, and the force balance its N(y). Together they say at which labels N rod i
-is found. A theory takes these labels, of the elastic chain with its own mean temperature
-m <W^2>, to the places that have them in its own N(y). This is exact at e = 1 at rest and after a
-shift or a stretch from there. Without a gap it is the law above.
+**With a gap** at e = 1 and rest the Gibbs measure has the exact p_i of the elastic chain, and the
+force balance its N(y). Together they say at which labels N rod i is found. A theory takes these
+labels, of the elastic chain with its own mean temperature m <W^2>, to the places that have them in
+its own N(y). This is exact at e = 1 at rest and after a shift or a stretch from there.
 
 Every distribution is a table of some places. Between them its integral is a cubic.
 """
@@ -39,6 +38,8 @@ from crazybilliards.model.arrays import Array
 # More rods are not resolved: neither by a grid of positions nor, with a gap, within seconds.
 MOST_RODS, MOST_RODS_WITH_GAP = 10_000, 3000
 
+_TOGETHER = 500  # rods that are summed at once, for the memory
+_RESOLVED = 0.8  # spacings of x in the width of a rod, from which on a sum over x is its integral
 _NODES = 193  # of a table
 _TAIL = 1e-13  # probability beyond either end of a table
 _FARTHEST = 1e-8  # shares of the points closer to an end than this are numerical noise
@@ -147,10 +148,7 @@ def exchangeable(size: int) -> RodPlaces:
 
 
 def beta_scores(first: Array, second: Array) -> RodPlaces:
-    """Return distributions of normal scores of labels that are Beta(first, second).
-
-    ``second`` is ``first`` backwards.
-    """
+    """Return laws of normal scores of Beta(first, second); ``second`` is ``first`` backwards."""
     low = np.asarray(ndtri(betaincinv(first, second, _TAIL)), dtype=float)
     score: Array = low[:, None] + np.linspace(0.0, 1.0, _NODES) * (-low[::-1] - low)[:, None]
     first, second = first[:, None], second[:, None]
@@ -205,3 +203,52 @@ def _scores_at_rest(chain: Chain) -> tuple[Array, Array]:
 
 def _normal(score: Array) -> Array:
     return np.asarray(np.exp(-(score**2) / 2) / math.sqrt(2 * math.pi))
+
+
+def over_positions(chain: Chain, x: Array, rods: RodPlaces) -> tuple[Array, Array]:
+    """Return density [1/R] and label of the rods at ascending, even ``x`` [R].
+
+    Rod i adds p_i(x - 2R (i - (L+1)/2)) to the density at x.
+    """
+    shift, spacing = 2 * chain.radius * chain.rank[:, None], x[1] - x[0]
+    resolved = rods.width() > _RESOLVED * spacing
+    density, label = np.zeros((2, x.size))
+    for first in range(0, chain.size, _TOGETHER):
+        some = slice(first, first + _TOGETHER)
+        rod, node, below, p = _at_nodes(x, rods.places[some] + shift[some], rods, some)
+        # The points come from a grid and are a little rough: a rod that x resolves is made 1.
+        held = spacing * np.bincount(rod, p, resolved[some].size)
+        p = p / np.where(resolved[some] & (held > 0), held, 1.0)[rod]
+        density += np.bincount(node, p, x.size)
+        label += np.bincount(node, below, x.size)
+    # A rod counts as one from the first node beyond its table.
+    ends = np.searchsorted(x, rods.places[:, -1] + shift[:, 0], side="right")
+    label += np.searchsorted(np.sort(ends), np.arange(x.size), side="right")
+    # Its ripples are taken out, in both directions alike.
+    from_above = np.minimum.accumulate(label[::-1])[::-1]
+    return density, (np.maximum.accumulate(label) + from_above) / 2
+
+
+def _at_nodes(
+    x: Array, places: Array, rods: RodPlaces, some: slice
+) -> tuple[NDArray[np.intp], NDArray[np.intp], Array, Array]:
+    """Return rod, node, the probability below it and the density, of all nodes in the tables."""
+    first = np.searchsorted(x, places[:, 0])
+    count = np.searchsorted(x, places[:, -1], side="right") - first
+    rod = np.repeat(np.arange(count.size), count)
+    node = np.arange(rod.size) - np.repeat(np.cumsum(count) - count, count) + first[rod]
+    at, width = x[node], places.shape[1]
+    # All tables in one ascending row, so that one search finds all cells.
+    apart = 2 * max(float(np.ptp(x)), float(np.ptp(places)))
+    row = (places + apart * np.arange(len(places))[:, None]).ravel()
+    cell = np.searchsorted(row, at + apart * rod, side="right") - 1 - rod * width
+    cell = np.clip(cell, 0, width - 2)
+    left, step = places[rod, cell], places[rod, cell + 1] - places[rod, cell]
+    below, slope = rods.below[some], rods.density[some]
+    start, rise = below[rod, cell], below[rod, cell + 1] - below[rod, cell]
+    # The cubic with these values and slopes at both ends of a cell.
+    a, b = step * slope[rod, cell], step * slope[rod, cell + 1]
+    c, d, t = 3 * rise - 2 * a - b, a + b - 2 * rise, (at - left) / step
+    value = start + t * (a + t * (c + t * d))
+    p = np.maximum(a + t * (2 * c + 3 * t * d), 0.0) / step
+    return rod, node, np.clip(value, 0.0, 1.0), p

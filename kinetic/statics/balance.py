@@ -122,10 +122,7 @@ def check_force_balance(
     displacement: Prescribed | None = None,
     velocity_variance: float | Prescribed | None = None,
 ) -> tuple[Chain, Profile | None, Profile | None]:
-    """Raise the ValueError that :func:`force_balance` would raise for a wrong argument.
-
-    Return the elastic chain with this temperature, and the profiles <dx>(x) and W^2(x) if given.
-    """
+    """Raise for a wrong argument; return the elastic chain, <dx>(x) and W^2(x) if given."""
     prescribed = read_displacement(chain, displacement)
     chain, variance = read_velocity_variance(chain, velocity_variance)
     if prescribed is not None and variance is not None:

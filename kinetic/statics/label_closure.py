@@ -26,8 +26,6 @@ rho_y = 1/g, and eps is below what is told from 0. Without a gap Lam is set to 1
 times the density of a rod that is alone. Without springs rho_y is constant.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

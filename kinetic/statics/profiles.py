@@ -7,8 +7,6 @@ displacement that is callable may have an attribute ``support``, the interval (l
 it is finite; the density vanishes outside.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from numbers import Real

@@ -19,8 +19,6 @@ change the pressure by a factor e^2 at most, except in the far tails. The mesh i
 of the stationary state of the free chain and is then adapted to the solution.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -12,8 +12,6 @@ A root finder determines C so that there are L rods in all. Integrals are by Gau
 quadrature in every cell of the position grid.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -10,7 +10,7 @@ from scipy.stats import truncnorm
 
 from crazybilliards import deviation, smooth
 from crazybilliards.kinetic import equilibrium, force_balance, hydrodynamics, rod_by_rod
-from crazybilliards.kinetic.fluids.one_mass import wave_model_error
+from crazybilliards.kinetic.fluids.stated_errors import wave_model_error
 from crazybilliards.kinetic.gas.collision_moments import decay_of_two_masses
 from crazybilliards.kinetic.starts import gathered, wave
 from crazybilliards.model import Chain

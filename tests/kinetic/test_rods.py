@@ -15,8 +15,7 @@ from crazybilliards.kinetic import (
     steady_state,
 )
 from crazybilliards.kinetic.rods import fluids, places
-from crazybilliards.kinetic.rods.places import elastic_rods
-from crazybilliards.kinetic.rods.profiles import over_positions
+from crazybilliards.kinetic.rods.places import elastic_rods, over_positions
 from crazybilliards.model import Chain, load, save
 from crazybilliards.particles import simulate
 
