@@ -9,7 +9,7 @@ from crazybilliards.model.arrays import Array
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.words import check_chain
 
-_MOST_OUTPUTS = 1_000_000
+_OUTPUTS, _MOST_OUTPUTS = 100, 1_000_000
 
 
 def require_chain(
@@ -53,10 +53,10 @@ def require_chain(
         chain.require_steady_state()
 
 
-def output_times(duration: float | None, every: float | None, number: int) -> Array:
-    """Return 0, every (None: duration/number), ... up to ``duration`` or the next time [t_0]."""
+def output_times(duration: float | None, every: float | None) -> Array:
+    """Return 0, every (None: duration/100), ... up to ``duration`` or the next time [t_0]."""
     duration = check_real("duration", duration, positive=True)
-    every = duration / number if every is None else check_real("every", every, positive=True)
+    every = duration / _OUTPUTS if every is None else check_real("every", every, positive=True)
     if every > duration * (1 + 1e-9):
         raise ValueError(f"every must be at most the duration {duration:g}, got {every:g}")
     count = np.ceil(duration / every - 1e-9)

@@ -108,14 +108,14 @@ def _at_rest(chain: Chain, x: Array, density: Array, label: Array) -> xr.Dataset
     ).assign_attrs(density_of=OF_FLUID)
 
 
-def check_start(start: xr.Dataset | None, more: str = "") -> xr.Dataset:
+def check_start(start: xr.Dataset | None) -> xr.Dataset:
     """Return a start, or raise a ValueError that says what one is and which functions make one."""
     if isinstance(start, xr.Dataset):
         return start
     came = "none" if start is None else shown(start)
     raise ValueError(
         "start must be a result with density over x: displaced(chain, shift) or compressed(chain, "
-        f"factor) make one of this chain, force_balance one of another{more}; got {came}"
+        f"factor) make one of this chain, force_balance one of another; got {came}"
     )
 
 

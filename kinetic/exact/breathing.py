@@ -29,8 +29,6 @@ from crazybilliards.model.checks import check_real
 from crazybilliards.model.memory import require_memory
 from crazybilliards.model.vocabulary import result
 
-_OUTPUTS = 100
-
 
 def breathing_cloud(
     chain: Chain,
@@ -69,15 +67,13 @@ def breathing_cloud(
     Raises
     ------
     ValueError
-        For a chain that does not meet these conditions or a wrong argument, before any work; if
-        the cloud collapses.
+        For another chain or a wrong argument, before any work; if the cloud collapses.
     """
     require_chain(chain, "the breathing cloud", elastic=True, linear=True, gapless=True)
-    times = output_times(duration, every, _OUTPUTS)
+    times = output_times(duration, every)
     stretch = check_real("stretch", stretch, positive=True)
     shift = check_real("shift", shift, signed=True)
-    free = chain.free_velocity_width**2
-    hot = free
+    free = hot = chain.free_velocity_width**2
     if start_velocity_variance is not None:
         hot = check_real("start_velocity_variance", start_velocity_variance, positive=True)
     require_memory(f"every: {times.size} outputs", 32.0 * times.size * chain.size)

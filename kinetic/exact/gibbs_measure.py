@@ -55,15 +55,14 @@ def equilibrium(chain: Chain) -> xr.Dataset:
     xarray.Dataset
         ``density`` and ``label`` over x; ``mean_displacement``, ``displacement_width`` and
         ``velocity_width`` over particle; in a box ``wall_force`` over wall.
-        ``attrs["residual"]`` is the spread of log Z over the particles. It is normally 1e-6 or
-        less, and relative errors are of this order.
+        ``attrs["residual"]``, the spread of log Z over the particles, is of the order of the
+        relative errors and normally 1e-6 or less.
 
     Raises
     ------
     ValueError
-        If the restitution is not 1, if there is no steady state, or if L is so large (above
-        some 10^4) that the recursion would not fit into memory: 8 bytes for each rod and each of
-        its 150 sqrt(L) nodes.
+        If the restitution is not 1, if there is no steady state, or if L (above some 10^4) is too
+        large for the memory: 8 bytes for each rod and each of its 150 sqrt(L) nodes.
 
     Examples
     --------
@@ -114,8 +113,8 @@ def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Datase
     Returns
     -------
     xarray.Dataset
-        ``position`` and ``velocity`` over (replica, particle): the ``start`` of a simulation.
-        It takes 40 bytes for each rod of each state.
+        ``position`` and ``velocity`` over (replica, particle), the ``start`` of a simulation, at 40
+        bytes for each rod of each state.
 
     Raises
     ------
@@ -131,8 +130,7 @@ def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Datase
     y = np.empty((replicas, chain.size))
     below = np.full(replicas, np.inf)
     for i in reversed(range(chain.size)):
-        nodes = recursion.nodes(i)
-        log_f = recursion.log_z(i)
+        nodes, log_f = recursion.nodes(i), recursion.log_z(i)
         # 1 - U lies in (0, 1]: its logarithm is finite.
         target = np.interp(below, nodes, log_f) + np.log1p(-generator.random(replicas))
         # Linear in log Z_i between nodes, in both directions, so that the order is kept exactly.

@@ -31,7 +31,7 @@ def gas_of_points(chain: Chain, start: xr.Dataset, duration: float, every: float
 
     ``start`` has a ``label`` over x, and the chain's temperature. Times are in t_0.
     """
-    times = output_times(duration, every, number=1)
+    times = output_times(duration, every)
     y = np.linspace(*chain.walls, _CELLS + 1)
     k = np.pi * np.arange(_CELLS) / (y[-1] - y[0])
     # How many points are in each cell: of these numbers, too, every cosine decays by itself.

@@ -79,7 +79,6 @@ from crazybilliards.model.vocabulary import OF_FLUID, require, result
 Frame = Literal["label", "eulerian"]
 Evolving = Literal["evolving"]
 
-_OUTPUTS = 100
 _BYTES_PER_NODE = 100  # and output: the fields while they are computed, and in the result
 
 
@@ -178,7 +177,7 @@ def hydrodynamics(
             "a profile of displacement or velocity_variance needs frame='eulerian'; a number as "
             "velocity_variance does not"
         )
-    times = output_times(duration, every, _OUTPUTS)
+    times = output_times(duration, every)
     if cells is not None:
         cells = check_integer("cells", cells, least=8)
         if cells > MOST_CELLS:
@@ -186,9 +185,7 @@ def hydrodynamics(
     initial = read_start(chain, start)
     nodes = position_grid(chain, float(np.abs(initial.x).max())).size + chain.size
     require_memory(f"every: {times.size} outputs", _BYTES_PER_NODE * float(nodes) * times.size)
-    fluid, exchange = chain, exchange_of(chain)
-    if chain.mass_ratio != 1:
-        fluid = chain.replace(mass=chain.mean_mass, mass_ratio=1.0)
+    fluid, exchange = chain.replace(mass=chain.mean_mass, mass_ratio=1.0), exchange_of(chain)
     how: Any = {"thermal": kind == "evolving", "progress": progress}
     if frame == "label":
         fields = solve_on_labels(fluid, initial, times, cells, exchange=exchange, **how)

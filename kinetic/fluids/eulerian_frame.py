@@ -22,13 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from crazybilliards.kinetic.fluids.finite_volumes import (
-    VACUUM,
-    Constants,
-    eulerian_rate,
-    make_rate,
-    primitive,
-)
+from crazybilliards.kinetic.fluids.finite_volumes import VACUUM, Constants, eulerian_rate, primitive
 from crazybilliards.kinetic.fluids.pde_solver import FlowFields, solve
 from crazybilliards.kinetic.fluids.position_cells import make_faces, starting_fields
 from crazybilliards.kinetic.starts import Start
@@ -78,8 +72,7 @@ def solve_on_positions(
             break
     else:
         raise ValueError("the rods spread without end on the grid of positions")
-    unsteadiness = np.array([_unsteadiness(state, constants) for state in solution])
-    return _on_grid(chain, faces, solution, constants, unsteadiness)
+    return _on_grid(chain, faces, solution, constants)
 
 
 def make_constants(
@@ -87,7 +80,7 @@ def make_constants(
     faces: Array,
     variance: Profile | None,
     displacement: Profile | None,
-    exchange: float = 1.0,
+    exchange: float,
 ) -> Constants:
     """Return the quantities that the rates depend on, at the cells between ``faces``."""
     s, W, L = length_unit(chain), chain.free_velocity_width, chain.size
@@ -119,7 +112,6 @@ def _integrate(
     fields: dict[str, Array], times: Array, faces: Array, constants: Constants, *, progress: bool
 ) -> Array:
     """Take steps that resolve the fastest signal, whose speed is certain only afterwards."""
-    rate = make_rate(constants)
     h, s, interval = constants.spacing, constants.size / constants.dilute, times[1] - times[0]
     start = np.array(list(fields.values()))
     fastest = _fastest(start, constants)
@@ -140,7 +132,7 @@ def _integrate(
                 f"{work * _CELL_STEP / 3600:.0f} hours; use frame='label'"
             )
         solution = solve(
-            rate,
+            lambda values, time: eulerian_rate(values, constants),
             fields,
             (faces[0], faces[-1]),
             times,
@@ -217,9 +209,7 @@ def _unsteadiness(fields: Array, constants: Constants) -> float:
     return float(np.sqrt(share @ square))
 
 
-def _on_grid(
-    chain: Chain, faces: Array, solution: Array, constants: Constants, unsteadiness: Array
-) -> FlowFields:
+def _on_grid(chain: Chain, faces: Array, solution: Array, constants: Constants) -> FlowFields:
     """Put the cells' means onto the position grid and the particles."""
     L = chain.size
     h, middle = faces[1] - faces[0], (faces[1:] + faces[:-1]) / 2
@@ -228,24 +218,20 @@ def _on_grid(
     within = np.clip(x, faces[0], faces[-1])
     density, label, velocity, variance = np.empty((4, len(solution), x.size))
     rods, rod_velocities = np.empty((2, len(solution), L))
+    unsteadiness, energy = np.empty((2, len(solution)))  # energy: of the flow and of the heat
     for i, fields in enumerate(solution):
         _, v, log_variance = primitive(fields, constants).T
+        heat = constants.heat * np.exp(log_variance)
         count = CubicSpline(faces, np.concatenate([[0.0], np.cumsum(fields[0]) * h]))
         label[i] = count(within)
         # A spline through a shock may overshoot vacuum and close packing.
         reduced = np.clip(count(within, 1), 0.0, (1 - 1e-9) * chain.close_packed_density)
         density[i] = np.where(within == x, reduced, 0.0)
         velocity[i] = np.interp(within, middle, v)
-        variance[i] = np.interp(within, middle, constants.heat * np.exp(log_variance))
+        variance[i] = np.interp(within, middle, heat)
         rods[i] = np.interp(chain.rank + L / 2, np.maximum.accumulate(label[i]), x)
         rod_velocities[i] = np.interp(rods[i], x, velocity[i])
+        unsteadiness[i] = _unsteadiness(fields, constants)
+        energy[i] = fields[0] @ (v**2 + heat) / fields[0].sum()
     fields = (density, label, velocity, variance, rods, rod_velocities)
-    energy = np.array([_energy(state, constants) for state in solution])
     return FlowFields(x, *fields, middle.size, unsteadiness, energy)
-
-
-def _energy(fields: Array, constants: Constants) -> float:
-    """Return the mean of v^2 over the rods: of the flow and of the heat."""
-    _, v, log_variance = primitive(fields, constants).T
-    square = v**2 + constants.heat * np.exp(log_variance)
-    return float(fields[0] @ square / fields[0].sum())

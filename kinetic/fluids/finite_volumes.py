@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crazybilliards.kinetic.fluids.pde_solver import Rate
 from crazybilliards.model import spring
 from crazybilliards.model.arrays import Array
 from crazybilliards.model.kernels import copy, inlined, kernel
@@ -147,12 +146,3 @@ def eulerian_rate(fields, constants):  # type: ignore[no-untyped-def]
         left[1], right[1] = outwards * state[i, 1], -outwards * state[i, 1]
         rates[1, i] -= outwards * _hll(left, right, constants, sound)[1] / spacing
     return rates
-
-
-def make_rate(constants: Constants) -> Rate:
-    """Return the rates of change as a function that py-pde can compile its steps around."""
-
-    def rate(values, time=0.0):  # type: ignore[no-untyped-def]
-        return eulerian_rate(values, constants)
-
-    return rate

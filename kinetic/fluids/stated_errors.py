@@ -56,9 +56,8 @@ def errors_to_state(
     duration, times = float(times[-1]), times[: len(fields.label)]
     errors = {"label_model_error": label_model_error(chain, start, fields, times)}
     if thermal:
-        error = errors["kinetic_energy_model_error"] = expected_in_time(
-            chain, _released_from(chain, fields)
-        )
+        error = expected_in_time(chain, _released_from(chain, fields))
+        errors["kinetic_energy_model_error"] = error
         if math.isnan(error) and chain.restitution != 1:
             warn_user(
                 "the error of the kinetic energy was not measured for chains and starts like these "

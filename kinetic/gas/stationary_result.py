@@ -11,8 +11,6 @@ from crazybilliards.kinetic.gas.agreement import Fluctuations, Steady
 from crazybilliards.kinetic.gas.cells import at_distance, of_rods
 from crazybilliards.kinetic.gas.mean_state import conductance
 from crazybilliards.kinetic.rods.places import (
-    MOST_RODS,
-    MOST_RODS_WITH_GAP,
     RodPlaces,
     are_resolved,
     at_temperature,
@@ -95,18 +93,17 @@ def rods_of(chain: Chain, found: Steady) -> Rods:
 
 def _own_widths(chain: Chain, found: Steady, T: Array) -> Array:
     """Return the widths of the rods in their neighbourhoods; NaN of too many rods."""
-    length = found.medium.length
-    if found.labels is not None and chain.size <= MOST_RODS:
+    if not are_resolved(chain):
+        return np.full(chain.size, np.nan)
+    if found.labels is not None:
         law = exchangeable(chain.size)
         score, place = found.labels.score, found.labels.place
         inside = np.clip(law.places, score[0], score[-1])
         y = PchipInterpolator(score, place)(inside)
         return np.sqrt(law.mean(y**2) - law.mean(y) ** 2)
-    if found.labels is None and chain.size <= MOST_RODS_WITH_GAP:
-        mean = float(T.mean())
-        elastic = elastic_rods(at_temperature(chain, mean * chain.temperature))
-        return elastic.width() / length * np.sqrt(T / mean)
-    return np.full(chain.size, np.nan)
+    mean = float(T.mean())
+    elastic = elastic_rods(at_temperature(chain, mean * chain.temperature))
+    return elastic.width() / found.medium.length * np.sqrt(T / mean)
 
 
 def _over_positions(chain: Chain, found: Steady, rods: Rods) -> tuple[dict[str, Array], Variables]:

@@ -36,8 +36,8 @@ def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
 
     with the points' density n = rho/(1 - 2 R rho) at y = x - 2R (N - L/2). Without a gap this is
     exact at restitution 1 if the theory's n is. With a gap rod i has the labels that it has in the
-    elastic chain of the fluid's mean temperature (:mod:`.places`), for each time. This takes as
-    long as ``equilibrium``.
+    elastic chain of the fluid's mean temperature (:mod:`.places`), which takes as long as
+    ``equilibrium`` for each.
 
     Parameters
     ----------

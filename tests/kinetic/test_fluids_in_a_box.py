@@ -29,16 +29,6 @@ def gas(damping, room=20.0, **parameters):
     return in_a_box(room, amplitude=math.sqrt(2 * damping), **parameters)
 
 
-@pytest.mark.parametrize("gap", [0.0, 0.4])
-def test_without_springs_density_and_pressure_are_constant(gap):
-    chain = in_a_box(20.0, stiffness=0, gap=gap)
-    found = force_balance(chain)
-    inside = np.abs(found.x) < chain.box / 2
-    np.testing.assert_allclose(found.density[inside], 20 / chain.box, rtol=1e-9)
-    np.testing.assert_allclose(found.wall_force, chain.temperature, rtol=1e-9)
-    np.testing.assert_array_equal(found.label[[0, -1]], [0, 20])
-
-
 @pytest.mark.parametrize("spring", ["linear", "quadratic"])
 def test_without_gap_the_points_and_their_pressure_are_exact(spring):
     chain = in_a_box(5.0, spring=spring)
@@ -93,7 +83,7 @@ def test_the_rods_of_a_fluid_at_rest_do_not_depend_on_the_masses():
 
 
 def test_a_constant_given_temperature_and_a_given_displacement_change_nothing():
-    for chain in (in_a_box(5.0), in_a_box(10.0, gap=0.3), in_a_box(20.0, stiffness=0)):
+    for chain in (in_a_box(5.0), in_a_box(10.0, gap=0.3), in_a_box(20.0, stiffness=0, gap=0.4)):
         plain, variance = force_balance(chain), chain.free_velocity_width**2
         warm = force_balance(chain, velocity_variance=lambda x, w=variance: w + 0 * np.asarray(x))
         np.testing.assert_allclose(warm.density, plain.density, atol=1e-8)
