@@ -75,8 +75,6 @@ def expected(theory: str, chain: Chain) -> Accuracy:
 
 def _of_force_balance(chain: Chain) -> Accuracy:
     """Return the errors of ``force_balance`` at e = 1, where they were measured."""
-    if chain.restitution != 1:
-        return Accuracy()
     if chain.box:
         density = _IN_A_BOX if chain.exchangeable else math.nan
         return Accuracy(velocity_width=0.0, border=0.0, density=density)
@@ -169,8 +167,7 @@ class Release(NamedTuple):
 def expected_in_time(chain: Chain, release: Release | None) -> float:
     """Return the relative error of the kinetic energy of ``hydrodynamics`` with a temperature.
 
-    It is that of any time after a ``release``; None: another start. NaN: not measured. At e = 1
-    Gaussian clouds are exact.
+    It is that of any time after a ``release``; None: another start. NaN: not measured.
     """
     known = chain.stiffness > 0 and chain.box == 0 and chain.mass_ratio == 1
     if not known or release is None:

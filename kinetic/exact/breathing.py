@@ -6,8 +6,7 @@ rho_y = L Normal(y; Y(t), sigma(t)^2), stays Gaussian, with the flow V = Y' + (s
     Y'' = -(k/m) Y - (gamma/m) Y',
     sigma'' = W^2/sigma - (k/m) sigma - (gamma/m) sigma'.
 
-In the *isothermal* fluid W^2 is constant. With an *evolving* temperature W^2 is uniform in space
-and
+*Isothermal*, W^2 is constant. With an *evolving* temperature W^2 is uniform in space and
 
     (W^2)' = -2 W^2 sigma'/sigma - (2 gamma/m) W^2 + A^2/m^2.
 
@@ -55,8 +54,7 @@ def breathing_cloud(
     start_velocity_variance
         W^2 at the start [R^2/t_0^2]; None: the free value.
     evolving
-        True: with the temperature equation, exact for the rods. False: isothermal at the free
-        value.
+        True: with the temperature equation, exact for the rods. False: isothermal.
 
     Returns
     -------

@@ -106,9 +106,8 @@ def _in_vocabulary(chain: Chain, recursion: Recursion) -> xr.Dataset:
 def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Dataset:
     """Draw ``replicas`` independent states of the elastic chain in its stationary state.
 
-    The recursion is sampled backwards: the last rod from Z_L, then each rod from Z_i, up to the
-    position of its right neighbour. Velocities are independent Gaussians of width W. ``seed``
-    is as in ``simulate``.
+    The recursion is sampled backwards: the last rod from Z_L, then each rod from Z_i, up to its
+    right neighbour. Velocities are independent Gaussians. ``seed`` is as in ``simulate``.
 
     Returns
     -------

@@ -16,9 +16,8 @@ paper fits in the steady state.
 **Velocity variance.** The paper has no equation for it, and takes it as constant in the steady
 state at restitution 1. *Isothermal*: W^2 is the free value at all times. This is wrong in a
 transient at the reference damping, where heat is exchanged more slowly than the chain moves.
-*Evolving*: W^2 and the third moment q = <(v - V)^3> have equations of their own. With
-D = d/dt + V d/dx, d/dy = (1 - 2 R rho)^-1 d/dx in the reduced coordinate, and the density
-n = rho/(1 - 2 R rho) there,
+*Evolving*: W^2 and the third moment q = <(v - V)^3> have their own equations. In the reduced
+coordinate, with D = d/dt + V d/dx, d/dy = (1 - 2 R rho)^-1 d/dx, n = rho/(1 - 2 R rho),
 
     D W^2 = -2 W^2 V_y - (n q)_y/n - 2 Gamma_T (W^2 - A^2/(2 m gamma)) - a E n W^3,
     D q   = -3 W^2 (W^2)_y - 3 q V_y - (3 Gamma_T + a c n W) q.
@@ -117,9 +116,8 @@ def hydrodynamics(
     frame
         ``"label"``: conserves the number of rods exactly, and takes milliseconds to a second.
         ``"eulerian"``: the paper's equations on a grid of positions, without heat flux, as an
-        independent check. It refuses rods that the springs make too fast for its cells. Between
-        walls it takes starts with a vacuum at a wall, which the other frame refuses if the
-        temperature evolves.
+        independent check. It refuses rods that the springs make too fast for its cells. Starts
+        with a vacuum at a wall are refused by the other frame if the temperature evolves.
     every
         Time between outputs [t_0]; None: a hundredth of the duration. Each output takes 100 bytes
         for each node of its grid x (21 or more in a rod length) and for each rod.

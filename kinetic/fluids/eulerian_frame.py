@@ -85,11 +85,8 @@ def make_constants(
     """Return the quantities that the rates depend on, at the cells between ``faces``."""
     s, W, L = length_unit(chain), chain.free_velocity_width, chain.size
     x = (faces[1:] + faces[:-1]) / 2
-    squares, frozen = np.full(x.size, W**2), np.empty(0)
-    if variance is not None:
-        squares = np.asarray(variance.function(x), dtype=float)
-    if displacement is not None:
-        frozen = _frozen(displacement, x)
+    squares = np.full(x.size, W**2) if variance is None else variance.function(x)
+    frozen = np.empty(0) if displacement is None else _frozen(displacement, x)
     return Constants(
         x,
         float(faces[1] - faces[0]),
@@ -178,7 +175,7 @@ def _frozen(profile: Profile, x: Array) -> Array:
     inside = x
     if np.isfinite(half):
         inside = middle + np.clip(x - middle, -half * _JUST_INSIDE, half * _JUST_INSIDE)
-    values = np.asarray(profile.function(inside), dtype=float) + (x - inside)
+    values = profile.function(inside) + (x - inside)
     if not np.isfinite(values).all():
         raise ValueError("displacement must be finite on the grid of positions")
     return values

@@ -26,8 +26,7 @@ defined on the faces between them, p = kappa S/d^3 with d the distance of neighb
 and the positions of the cells are calibrated on the stationary state. This state, its rigid motions
 and, without a gap, every breathing motion are therefore exact for any M. The ends are free, p = 0.
 At shocks there is an artificial viscosity of von Neumann and Richtmyer on the velocity jump that
-remains after a limited linear reconstruction, which vanishes for smooth flows. With a temperature
-its work becomes heat.
+remains after a limited linear reconstruction. With a temperature its work becomes heat.
 """
 
 from typing import NamedTuple
@@ -102,9 +101,8 @@ def solve_on_labels(
     with np.errstate(over="ignore", invalid="ignore"):
         solution = solve(
             lambda values, time: interval * label_rate(values, constants),
-            # The cells are not equally wide. For py-pde they have numbers and not positions.
             fields,
-            (0, cells.labels.size),
+            (0, cells.labels.size),  # numbers of cells that are not equally wide
             np.arange(float(times.size)),
             unit=times[1],
             progress=progress,

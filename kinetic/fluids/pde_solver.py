@@ -76,8 +76,7 @@ def solve(
     py-pde ends a run at Ctrl-C without raising. The result then has the first times only, as when
     ``watch`` returned True for the fields and the time [t_0] of an output. ``unit`` is that of
     ``times`` [t_0], and ``solver`` are the arguments of py-pde. Without ``dt`` the unit of time
-    must be about the time between outputs, because py-pde then takes times that differ by 1e-8 for
-    the same.
+    must be about the time between outputs: py-pde takes times that differ by 1e-8 for the same.
     """
     grid = CartesianGrid([ends], len(next(iter(fields.values()))))
     state = FieldCollection([ScalarField(grid, fields[name], label=name) for name in fields])

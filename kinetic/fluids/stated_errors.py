@@ -6,8 +6,7 @@ k = pi/(X - 2RL), then decays exactly as
 
     exp(-k^2 M(t)/2),      G = gamma/m,      M(t) as in :mod:`crazybilliards.kinetic.exact.points`,
 
-while the relative density r, velocity w, temperature h and heat flux f of the fluid obey, for small
-amplitudes,
+while small deviations of the fluid's density r, velocity w, temperature h and heat flux f obey
 
     r' = -k w,      w' = k W^2 (r + h) - G w,      h' = -2 k w - k f - 2 G h,
     f' = 3 k W^2 h - 3 G f,
@@ -22,8 +21,7 @@ of a point is then normal, with the mean and the variance
     y(t) = a y + b V,      s^2 (1 - a^2) + b^2 (W_0^2 - W^2),      s^2 (1 - a^2) = M(t) at k = 0,
 
 where a and b are the first row of exp(B t), B = [[0, 1], [-k/m, -G]], and W_0^2 is the variance at
-the start. In a box every cosine of the density decays by itself. Streams pass through one another,
-as those of a fluid do not.
+the start. In a box every cosine of the density decays by itself.
 """
 
 import math

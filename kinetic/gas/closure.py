@@ -2,17 +2,15 @@ r"""From the fluctuations of the gas to its mean state: the strength of collisio
 
 **Collective motion.** Whole neighbourhoods move together: the displacement u of a place has the
 variance h_uu, and its velocity has K times it, as the waves that displace rods far are hardly
-faster than the spring, whose stiffness is K. The mean state describes the rods within their
-neighbourhood, so
+faster than the spring of stiffness K. The mean state describes rods within their neighbourhood, so
 
     W_v^2 = T + K h_uu,      noise of the mean state:  2 Gamma (1 - K h_uu) in place of 2 Gamma.
 
 For the centre of mass alone, K h_uu = 1/L. Without springs nothing pulls a neighbourhood back, and
 it shares no motion of this kind.
 
-**What collisions take.** With w the speed at which rods meet, a collision has the impulse
-(1 + e) w/2 and takes (1 - e^2) w^2/2 from the sum of v^2. So with the means over the collisions of
-a contact
+**What collisions take.** At the relative speed w a collision has the impulse (1 + e) w/2 and takes
+(1 - e^2) w^2/2 from the sum of v^2. So with the means over the collisions of a contact
 
     Lambda = (1 - e) P <w^2>/<w> = (4/sqrt(pi)) (1 - e) P K F sqrt(Theta),
 
@@ -35,9 +33,7 @@ In the equations of the gas that is Lambda = a E n T^(3/2), with P = n T and
 and 1 - 1/L times it for points at a label, which meet L - 1 others.
 """
 
-from __future__ import annotations
-
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -59,12 +55,12 @@ class Closure(NamedTuple):
     log_strength: Array  # ln b, b = 2 K F/(1 + e), the strength of collisions of rods with Theta
 
     @classmethod
-    def of_mean_field(cls, contacts: Array) -> Closure:
+    def of_mean_field(cls, contacts: Array) -> Self:
         """Return that of independent rods."""
         return cls(*np.zeros((3, contacts.size)))
 
     @classmethod
-    def unpacked(cls, vector: Array) -> Closure:
+    def unpacked(cls, vector: Array) -> Self:
         """Return the unknowns of a vector, within their bounds."""
         shared, collective, strength = np.split(vector, 3)
         most = 1 - _LEAST
@@ -76,11 +72,11 @@ class Closure(NamedTuple):
         bounded = 1 - self.shared, 1 - self.collective, np.exp(self.log_strength)
         return min(float(values.min()) for values in bounded) > 2 * _LEAST
 
-    def at(self, contacts: Array, labels: Array) -> Closure:
+    def at(self, contacts: Array, labels: Array) -> Self:
         """Return those at other labels; a rod alone has none."""
         if contacts.size == 0:
-            return Closure.of_mean_field(labels)
-        return Closure(*(np.interp(labels, contacts, values) for values in self))
+            return self.of_mean_field(labels)
+        return type(self)(*(np.interp(labels, contacts, values) for values in self))
 
     def relative_temperature(self, T: Array) -> Array:
         """Return Theta of contacts where the mean state has T."""

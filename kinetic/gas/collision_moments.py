@@ -27,8 +27,7 @@ are m and M, an elastic collision rotates v and u, the velocities times the root
 
     v* = d v + r u,      u* = r v - d u,      d = (m - M)/(m + M),      r^2 = 1 - d^2,
 
-and the mean third moment of both sorts decays. In units of the mean mass, and at equal
-temperatures,
+and the mean third moment of both sorts decays. At equal temperatures, in units of the mean mass,
 
     decay = -< |v/sqrt(m) - u/sqrt(M)| (H3(v*) + H3(u*) - H3(v) - H3(u)) (H3(v) + H3(u)) >/12.
 """

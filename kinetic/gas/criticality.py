@@ -44,8 +44,7 @@ def critical_size(chain: Chain) -> CriticalValue:
     """Return the number of rods from which on a chain with e > 1 has no steady state.
 
     The value is that of weak damping. The error is 10 % of it where gamma/sqrt(k m) is up to 1.95
-    and e up to 1.1, and NaN beyond, with an ``UnmeasuredWarning``. ``chain.size`` and ``chain.gap``
-    do not matter.
+    and e up to 1.1, and NaN beyond, with an ``UnmeasuredWarning``. Size and gap do not matter.
 
     Raises
     ------

@@ -2,8 +2,7 @@ r"""Rods and points: the mean state of the gas seen in two ways.
 
 Neighbours stay neighbours, so a rod has a temperature of its own. But rods that exchange their
 velocities hand them on, and at e = 1 a velocity belongs to a point, which passes freely from rod to
-rod. Rod i then has the mean over the labels at which the i-th of L points is found,
-Beta(i, L + 1 - i).
+rod. Rod i then has the mean over the labels of the i-th of L points, Beta(i, L + 1 - i).
 
 Both have the same equations (:mod:`.mean_state`), on cells of a rod and on much smaller ones, and
 agree inside a chain. At its open ends points are too cold for e < 1, and rods too hot. Chains with

@@ -3,8 +3,7 @@ r"""Chains with e > 1 on linear springs: the density of points in phase space.
 Collisions make the fast faster. Velocities then have heavy tails, and fast rods reach the ends of
 the chain, which a closure of moments does not know. The density f(y, v) of relabelled points does.
 Points pass through each other, and each of the two loses the share lambda = (1 - e)/2 of their
-relative velocity, which is a gain for e > 1. If points that meet are independent, f obeys to first
-order in lambda
+relative velocity. If points that meet are independent, f obeys to first order in lambda
 
     v f_y - y f_v = Gamma d_v (v f + tau f_v) + kappa d_v (f I),
 
@@ -30,10 +29,8 @@ within 0.1 % of that on finer grids for Gamma <= 2 up to 0.85 of the critical si
 for Gamma = 3, 0.9 % at the first of 300 rods.
 """
 
-from __future__ import annotations
-
 import math
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -78,7 +75,7 @@ class _Axis(NamedTuple):
     curvature: Array
 
     @classmethod
-    def of(cls, half: int, reach: float, stretch: float) -> _Axis:
+    def of(cls, half: int, reach: float, stretch: float) -> Self:
         """Make an axis of twice ``half`` points, the last ones near ``reach``."""
         h = 1 / half
         X = h * (np.arange(2 * half) - half + 0.5)

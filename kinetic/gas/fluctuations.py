@@ -28,18 +28,16 @@ Q is what collisions do to two independent rods, [psi, phi] of :mod:`.collision_
     g Theta:        Lambda g, as rods that are close by chance collide, and cool, more often.
 
 **The noise of the velocities** is exact in its sum. Noise feeds the total momentum with 2 Gamma W^2
-per rod, collisions with nothing. The local part takes out 2 Gamma Theta by damping. What feeds h is
-the rest, 2 Gamma (W^2 - Theta), and with the energy of all rods, Gamma sum (W^2 - T) =
+per rod, collisions with nothing. Damping takes 2 Gamma Theta out of the local part. What feeds h
+is the rest, 2 Gamma (W^2 - Theta), and with the energy of all rods, Gamma sum (W^2 - T) =
 sum Lambda/2, and Theta = T - h_c, that is Lambda + 2 Gamma h_c. The centre of mass then has the
 variance W^2/L whatever e is. A collision makes the covariance <v_i v_{i+1}> of two rods. So Lambda
 stands beside the diagonal: a contact adds half of it to (i, i + 1) and half to (i + 1, i).
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from scipy.linalg import block_diag, eigvals, solve_continuous_lyapunov
@@ -96,7 +94,7 @@ class Background(NamedTuple):
         """Which cells have a heat flux of their own: all but the last at open ends."""
         return slice(None) if self.cells.walled else slice(1, -1)
 
-    def on(self, cells: Cells) -> Background:
+    def on(self, cells: Cells) -> Self:
         """Return the state on other cells."""
         old, new = self.cells.all_labels, cells.all_labels
         fields = {name: np.interp(new, old, getattr(self, name)) for name in self._fields[2:-1]}

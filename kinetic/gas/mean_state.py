@@ -17,10 +17,8 @@ the local variance T/sqrt(k^2 + 4 k T/g^2) of a lattice of springs k whose neigh
 another with the stiffness T/g^2. Fluctuations of rods feel the mean slope k = 2 K <|x + u|>.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from scipy.linalg import solve_banded
@@ -58,7 +56,7 @@ class Medium(NamedTuple):
     moments: CollisionMoments
 
     @classmethod
-    def of(cls, chain: Chain) -> Medium:
+    def of(cls, chain: Chain) -> Self:
         """Make the medium of a chain."""
         length, n = unit_length(chain), chain.potential_exponent
         springs, e_w = chain.stiffness > 0, chain.wall_restitution

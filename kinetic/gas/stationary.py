@@ -1,15 +1,13 @@
 r"""The steady state of every chain, by the gas along labels.
 
 Mean state and fluctuations of the equations in :mod:`crazybilliards.kinetic.gas` agree with one
-another (:mod:`.agreement`). No number is fitted, and nothing from a simulation goes in. The rods
-have
+another (:mod:`.agreement`). No number is fitted, and nothing from a simulation goes in:
 
     W_v(i)^2 = T(i) + K h_uu(i),       W_x(i)^2 = q(i)^2 + h'_uu(i),
 
-T being the temperature within their neighbourhood, K h_uu the velocity that a neighbourhood shares,
-q the width of a rod in its neighbourhood (without a gap of the i-th of L points, with a gap in the
-elastic chain at its temperature), and h'_uu the displacement of neighbourhoods
-(:mod:`.displacements`).
+T being the temperature within a neighbourhood, K h_uu the velocity that it shares, q the width of a
+rod in it (without a gap of the i-th of L points, with a gap in the elastic chain at its
+temperature), and h'_uu the displacement of neighbourhoods (:mod:`.displacements`).
 
 **The mean field** (``correlations=False``, and always for e > 1) takes colliding rods for
 independent. The noise drives the centre of mass as well, which collisions leave alone, so that

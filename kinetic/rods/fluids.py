@@ -35,9 +35,8 @@ def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
         rho(x) = sum_i p_i(x - 2R (i - (L+1)/2)),    p_i(y) = n(y)/L Beta(N(y)/L; i, L + 1 - i),
 
     with the points' density n = rho/(1 - 2 R rho) at y = x - 2R (N - L/2). Without a gap this is
-    exact at restitution 1 if the theory's n is. With a gap rod i has the labels that it has in the
-    elastic chain of the fluid's mean temperature (:mod:`.places`), which takes as long as
-    ``equilibrium`` for each.
+    exact at restitution 1 if the theory's n is. With a gap rod i has its labels in the elastic
+    chain of the fluid's temperature (:mod:`.places`), which takes as long as ``equilibrium``.
 
     Parameters
     ----------

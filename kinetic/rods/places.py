@@ -3,8 +3,7 @@ r"""The distribution of each rod's place in the reduced coordinate, from a densi
 Theories compute the density n(y) of *points*, of which N(y) lie below y. Read as a fluid, rod i is
 at the place where N = i - 1/2. A real rod is found around it, and p_i(y) says where.
 
-**Without a gap** the points are exchangeable. If L points are drawn independently from n/L, the
-i-th in order has
+**Without a gap** the points are exchangeable. Of L points drawn from n/L the i-th in order has
 
     p_i(y) = n(y)/L Beta(N(y)/L; i, L + 1 - i).
 
@@ -19,11 +18,9 @@ its own N(y). This is exact at e = 1 at rest and after a shift or a stretch from
 Every distribution is a table of some places. Between them its integral is a cubic.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,7 +59,7 @@ class RodPlaces(NamedTuple):
         apart = self.places - self.mean()[:, None]
         return np.asarray(np.sqrt(self.mean(apart**2)))
 
-    def moved(self, mean: Array, width: Array) -> RodPlaces:
+    def moved(self, mean: Array, width: Array) -> Self:
         """Return the rods moved and stretched to other means and standard deviations."""
         factor = (width / self.width())[:, None]
         places = mean[:, None] + factor * (self.places - self.mean()[:, None])

@@ -68,9 +68,8 @@ def force_balance(
     chain
         The chain. A from 0.1 to 100, g from 0 to 3 and L from 2 to beyond 1e5 work.
     displacement
-        None: by labels, without an input. Otherwise <dx>(x) [R]: a table (x, <dx>), a
-        DataArray over x, a result with ``mean_displacement``, or a callable of x (the paper: a
-        fitted arctanh).
+        None: by labels, without an input. Otherwise <dx>(x) [R]: a table (x, <dx>), a DataArray
+        over x, a result with ``mean_displacement``, or a callable of x (in the paper an arctanh).
     velocity_variance
         W^2 [R^2/t_0^2]. None: the free value, which is right for restitution 1 only. Otherwise a
         number, or a profile W^2(x) in any form of the displacement (the ``velocity_width`` of a
@@ -94,9 +93,8 @@ def force_balance(
     Raises
     ------
     ValueError
-        If there is no steady state; if the restitution is not 1 and no variance is given; if the
-        displacement has a wrong form or does not hold the rods together; if a displacement and a
-        profile W^2(x) are given.
+        If there is no steady state; if the restitution is not 1 and no variance is given; for a
+        displacement of a wrong form, that does not hold the rods, or beside a profile W^2(x).
 
     Examples
     --------

@@ -7,8 +7,7 @@ the walls, X/2 - RL, where this is shorter. With
 
     eta = y/l,    nu = N/L - 1/2,    P = ln(rho_y l/L),    u = <dx>/l = eta - Lam nu,    Lam = g L/l
 
-and the strength of the springs K = (l/s)^n, which is 1 without walls, the right half of the
-(symmetric) chain has
+and the springs' strength K = (l/s)^n, 1 without walls, the right half of the symmetric chain has
 
     P' = -K u |u|^(n-2),      nu' = exp(P),      nu = 0 at the centre,      nu = 1/2 far outside,
 

@@ -28,7 +28,7 @@ Prescribed = xr.Dataset | Sequence[ArrayLike] | Array | Callable[[ArrayLike], Ar
 class Profile(NamedTuple):
     """A function of x, and the interval on which it is defined."""
 
-    function: Callable[[ArrayLike], ArrayLike]
+    function: Callable[[ArrayLike], Array]
     left: float
     right: float
 
@@ -72,7 +72,7 @@ def read_velocity_variance(
         function = _interpolated(x, values, slope=0.0)
 
     def positive(x: ArrayLike) -> Array:
-        values = np.asarray(function(x))
+        values = function(x)
         if not (np.isfinite(values).all() and (values > 0).all()):
             raise ValueError("velocity_variance must be finite and positive everywhere")
         return values

@@ -76,7 +76,7 @@ def solve_variable_temperature(chain: Chain, variance: Profile) -> xr.Dataset:
     free = chain.free_velocity_width**2 * (chain.mass / chain.mean_mass)
 
     def warmth(x: Array) -> Array:
-        return np.asarray(variance.function(s * x)) / free
+        return variance.function(s * x) / free
 
     end = min(_end(warmth, crowd, lam), chain.walls[1] / s)
     even = np.linspace(0, end, 100_001)
@@ -207,7 +207,7 @@ def _between_walls(chain: Chain, variance: Profile) -> xr.Dataset:
     """Solve without springs: rho = p/(W^2 + 2 R p), with the pressure m p that holds L rods."""
     L, R, end = chain.size, chain.radius, chain.box / 2
     x = np.linspace(-end, end, _NODES)
-    squares = np.asarray(variance.function(x), dtype=float)
+    squares = variance.function(x)
 
     def labels(log_p: float) -> Array:
         p = np.exp(log_p)
@@ -218,15 +218,14 @@ def _between_walls(chain: Chain, variance: Profile) -> xr.Dataset:
     p, label = np.exp(log_p), labels(log_p)
     grid = position_grid(chain)
     within = np.clip(grid, -end, end)
-    hot = np.asarray(variance.function(within), dtype=float)
     rods = np.interp(np.arange(L) + 0.5, L * label / label[-1], x)
     return closed_by_labels(
         chain,
         grid,
-        np.where(within == grid, p / (hot + 2 * R * p), 0.0),
+        np.where(within == grid, p / (variance.function(within) + 2 * R * p), 0.0),
         L * np.clip(PchipInterpolator(x, label / label[-1])(within), 0.0, 1.0),
         mean=rods - chain.anchors,
-        width=np.sqrt(chain.mean_mass / chain.rod_masses * np.asarray(variance.function(rods))),
+        width=np.sqrt(chain.mean_mass / chain.rod_masses * variance.function(rods)),
         wall_force=np.full(2, chain.mean_mass * p),
         theory=_THEORY,
         residual=abs(label[-1] / L - 1),

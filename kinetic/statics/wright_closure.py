@@ -100,8 +100,7 @@ def _edges(chain: Chain, profile: Profile) -> Array:
 def _pull(chain: Chain, profile: Profile, x: Array) -> Array:
     """Return F(<dx>)/T."""
     with np.errstate(all="ignore"):
-        values = np.asarray(profile.function(x.ravel()), dtype=float).reshape(x.shape)
-        pull = chain.force(values) / chain.temperature
+        pull = chain.force(profile.function(x.ravel()).reshape(x.shape)) / chain.temperature
     if not np.isfinite(pull).all():
         raise ValueError(
             f"displacement is not finite at x = {float(x[~np.isfinite(pull)][0]):g}; an attribute "

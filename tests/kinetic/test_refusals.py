@@ -35,13 +35,11 @@ force_balance(Chain(), ([0, 1], [1])) | equally long
 force_balance(Chain(), ([1, 0], [1, 2])) | ascending
 force_balance(Chain(), ([0, 1], [1, np.nan])) | finite
 force_balance(Chain(), lambda x: -x) | does not hold the rods together
-force_balance(Chain(), lambda x: 0 * x) | displacement
 force_balance(Chain(), lambda x: np.arctanh(x)) | not finite at x =
 force_balance(Chain(), lambda x: 0.3 * x, lambda x: 1.0) | cannot be given together
 force_balance(five, lambda x: "one") | displacement: the callable must return a number for each x
 force_balance(five, None, lambda x: "one") | velocity_variance: the callable must return a number
 force_balance(five, None, lambda x: -1.0) | finite and positive
-force_balance(five, None, ([0, 1], [1, 2, 3])) | equally long
 force_balance(five, None, "abc") | velocity_variance takes
 force_balance(five.replace(spring="quadratic"), None, lambda x: 1.0) | linear springs
 force_balance(boxed.replace(wall_restitution=0.5)) | elastic walls only
@@ -61,7 +59,6 @@ flow(displacement=([0, 1], [1, 2])) | needs frame='eulerian'
 flow(velocity_variance="cold") | velocity_variance must be None, 'evolving', a number
 flow(velocity_variance=lambda x: 1.0) | needs frame='eulerian'
 flow(velocity_variance=lambda x: -1.0, frame="eulerian") | finite and positive
-flow(velocity_variance=-1.0) | velocity_variance must be positive
 flow(cells=2) | cells must be
 flow(cells=10**8) | at most 100000
 flow(frame="eulerian", cells=10**5, duration=1e4) | use frame='label'
