@@ -123,8 +123,7 @@ def kind_and_place(chain: Chain) -> tuple[str, dict[str, float]]:
     elif chain.stiffness == 0:
         kind = "gas in a box"
     elif chain.restitution > 1:
-        bare = not chain.gap and not chain.box and chain.spring == "linear"
-        kind = "driven" if bare else ""
+        kind = "driven" if chain.gap == chain.box == 0 and chain.spring == "linear" else ""
         x = chain.size * (chain.restitution - 1) / (math.pi * damping)
     elif chain.box:
         kind, x = "box" if chain.spring == "linear" else "", 2 * chain.walls[1] / s

@@ -4,8 +4,6 @@ A start is a result with ``density`` over x (one time), and optionally ``label``
 and ``velocity_variance``. ``force_balance`` of another chain gives a quench.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -170,8 +168,7 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     if chain.box:
         x, density, label = _up_to_the_walls(chain, x, density, label)
     profiles = {}
-    free = _fluid_variance(own)
-    for name, default in (("flow_velocity", 0.0), ("velocity_variance", free)):
+    for name, default in (("flow_velocity", 0.0), ("velocity_variance", _fluid_variance(own))):
         values = _numbers(start, name) if name in start else np.full(given.size, default)
         if values.shape != given.shape or not np.isfinite(values).all():
             raise ValueError(f"start: {name} must be finite and over x alone")
@@ -189,6 +186,8 @@ def _up_to_the_walls(
     inside = np.diff(np.interp([-end - cell, end + cell], x, label))[0]
     require_rods(chain, "density between the walls", inside)
     within = np.abs(x) < end - cell / 2
+    if not within.any():
+        raise ValueError("start: x needs nodes between the walls")
     label = np.concatenate([[0.0], label[within], label[-1:]])
     return np.concatenate([[-end], x[within], [end]]), np.pad(density[within], 1, "edge"), label
 

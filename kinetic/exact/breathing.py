@@ -14,8 +14,6 @@ This is also the exact motion of the rods themselves at restitution 1: relabelle
 they are independent damped oscillators.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from scipy.integrate import solve_ivp

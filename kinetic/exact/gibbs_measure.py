@@ -25,8 +25,6 @@ rod there. Without springs it is L T/(X - 2RL), that of an ideal gas of points i
 (L. Tonks, Phys. Rev. 50, 955, 1936).
 """
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from scipy.interpolate import CubicSpline

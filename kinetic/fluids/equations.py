@@ -1,7 +1,7 @@
 r"""Hydrodynamics: the density rho(x, t) and the flow velocity V(x, t) of the chain in time.
 
 These are the continuity and the velocity equation of the paper (arXiv:1404.7460, ``eq9`` in its
-appendix and ``modeleq``), which uses them for V = 0 only, with the mass m and any spring:
+appendix and ``modeleq``), which uses them for V = 0 only. Here they have the mass m and any spring:
 
     rho_t + (rho V)_x = 0,
     V_t + V V_x = -(1/rho) (rho W^2/(1 - 2 R rho))_x - F(<dx>)/m - (gamma/m) V,

@@ -210,8 +210,7 @@ def _on_grid(chain: Chain, faces: Array, solution: Array, constants: Constants) 
     """Put the cells' means onto the position grid and the particles."""
     L = chain.size
     h, middle = faces[1] - faces[0], (faces[1:] + faces[:-1]) / 2
-    farthest = float(faces[-1] - chain.anchors[-1])
-    x = position_grid(chain, max(farthest, thermal_reach(chain)))
+    x = position_grid(chain, max(float(faces[-1] - chain.anchors[-1]), thermal_reach(chain)))
     within = np.clip(x, faces[0], faces[-1])
     density, label, velocity, variance = np.empty((4, len(solution), x.size))
     rods, rod_velocities = np.empty((2, len(solution), L))

@@ -102,32 +102,29 @@ def on_positions(
         theta = solution[:, 2, :-1] / distance**2
         flux = _heat_flux(chain, cells, solution[:, 3], distance)
     # Stay just inside: at the end itself rounding may put a node into the vacuum.
-    inner_faces = rest[1:-1] if chain.box else rest
-    nodes = _refined(inner_faces, state.eta[-1] * (1 - 1e-12))
+    nodes = _refined(rest[1:-1] if chain.box else rest, state.eta[-1] * (1 - 1e-12))
     labels, log_density = state.profile(nodes)
     rod_nodes = state.at(chain.rank / L)
 
-    place = [_continued(rest, y, nodes) for y in moved]
-    position = [s * eta + 2 * R * L * labels for eta, _ in place]
-    farthest = max(float(np.abs(y[[0, -1]]).max()) for y in position) - chain.anchors[-1]
+    place, slope = _continued(rest, moved, nodes)
+    position, speed = s * place + 2 * R * L * labels, _continued(rest, flow, nodes)[0]
+    farthest = float(np.abs(position[:, [0, -1]]).max()) - chain.anchors[-1]
     x = position_grid(chain, max(farthest, thermal_reach(chain)))
     density, label, velocity, variance, heat = np.zeros((5, len(solution), x.size))
-    rods, rod_velocities = np.empty((2, len(solution), L))
-    for i, (edges, (_, slope)) in enumerate(zip(position, place, strict=True)):
+    for i, edges in enumerate(position):
         within = np.clip(x, edges[0], edges[-1])
-        log_reduced = PchipInterpolator(edges, log_density - np.log(slope))(within)
+        log_reduced = PchipInterpolator(edges, log_density - np.log(slope[i]))(within)
         reduced = np.where(x == within, L / s * np.exp(log_reduced), 0.0)
         density[i] = reduced / (1 + 2 * R * reduced)
         label[i] = L * (0.5 + PchipInterpolator(edges, labels)(within))
         label[i][x < edges[0]], label[i][x > edges[-1]] = 0.0, L
-        velocity[i] = W * np.interp(within, edges, _continued(rest, flow[i], nodes)[0])
-        inner = s * moved[i] + 2 * R * L * cells.faces
-        variance[i] = W**2 * np.interp(within, inner, theta[i])
+        velocity[i] = W * np.interp(within, edges, speed[i])
+        variance[i] = W**2 * np.interp(within, s * moved[i] + 2 * R * L * cells.faces, theta[i])
         if flux is not None:
             middle = s * solution[i, 0] + 2 * R * L * cells.labels
             heat[i] = L * W**3 / s * np.interp(x, middle, flux[i], left=0.0, right=0.0)
-        rods[i] = s * _continued(rest, moved[i], rod_nodes)[0] + 2 * R * chain.rank
-        rod_velocities[i] = W * _continued(rest, flow[i], rod_nodes)[0]
+    rods = s * _continued(rest, moved, rod_nodes)[0] + 2 * R * chain.rank
+    rod_velocities = W * _continued(rest, flow, rod_nodes)[0]
     fields = (density, label, velocity, variance, rods, rod_velocities)
     size, hot = cells.labels.size, heat if flux is not None else None
     return FlowFields(x, *fields, size, unsteadiness, energy, hot)
@@ -155,10 +152,10 @@ def _refined(faces: Array, end: float) -> Array:
 
 
 def _continued(nodes: Array, values: Array, wanted: Array) -> tuple[Array, Array]:
-    """Interpolate, linearly beyond the ends; return values and slopes."""
-    spline = PchipInterpolator(nodes, values)
+    """Interpolate, linearly beyond the ends, along the last axis; return values and slopes."""
+    spline = PchipInterpolator(nodes, values, axis=-1)
     inside = np.clip(wanted, nodes[0], nodes[-1])
-    slopes = np.diff(values)[[0, -1]] / np.diff(nodes)[[0, -1]]
-    slope = np.where(wanted < nodes[0], slopes[0], slopes[1])
+    slopes = np.diff(values)[..., [0, -1]] / np.diff(nodes)[[0, -1]]
+    slope = np.where(wanted < nodes[0], slopes[..., :1], slopes[..., 1:])
     slope = np.where(wanted == inside, spline(inside, 1), slope)
     return spline(inside) + (wanted - inside) * slope, slope

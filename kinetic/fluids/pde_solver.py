@@ -55,7 +55,7 @@ class Flow(PDEBase):
         return self.rate
 
     def evolution_rate(self, state: Any, t: float = 0) -> Any:
-        """Return the rates in what has of py-pde's fields, which are slow, what it reads."""
+        """Return the rates with the one attribute of py-pde's slow fields that it reads."""
         # The values lie in an array with cells around them, for which a rate would compile again.
         return _Rates(self.rate(np.ascontiguousarray(state.data), t))
 

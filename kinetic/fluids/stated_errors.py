@@ -73,18 +73,19 @@ def errors_to_state(
             "(mass_ratio) or a damping above 4 pi m W/(X - 2RL) make them one"
         )
     else:
-        _warn_of_streams(chain, start, errors["label_model_error"])
+        _warn_of_streams(chain, start, errors["label_model_error"], thermal=thermal)
     return errors
 
 
-def _warn_of_streams(chain: Chain, start: Start, error: float) -> None:
+def _warn_of_streams(chain: Chain, start: Start, error: float, *, thermal: bool) -> None:
     """Warn if a label is wrong or, where that is not known, if streams meet."""
     v = start.velocity(start.x)[start.label(start.x, 1) > _THINNEST * chain.size / np.ptp(start.x)]
     closing = float((np.maximum.accumulate(v) - v).max())
     if error > _WRONG:
+        held = "" if thermal else "; velocity_variance='evolving' lets its temperature change"
         warn_user(
             f"the share of the rods on the left of a place is wrong by up to {error:.2g}: equal "
-            "elastic rods pass through one another, and those of a fluid do not"
+            f"elastic rods pass through one another, and those of a fluid do not{held}"
         )
     elif math.isnan(error) and closing > _FASTEST * chain.free_velocity_width:
         warn_user(
@@ -118,7 +119,7 @@ def _released_from(chain: Chain, fields: FlowFields) -> Release | None:
 
 
 def has_one_mass(chain: Chain) -> bool:
-    """Return whether the rods are such a gas."""
+    """Return whether the rods are equal and elastic, in a box without springs."""
     alone = chain.box > 0 == chain.stiffness
     return alone and chain.restitution == chain.wall_restitution == chain.mass_ratio == 1
 
@@ -143,8 +144,7 @@ def wave_model_error(chain: Chain, duration: float, *, moments: int) -> float:
     for _ in t:
         wave.append(state[0])
         state = step @ state
-    exact = np.exp(-(k**2) * free_spread(chain, t) / 2)
-    return float(np.abs(wave - exact).max())
+    return float(np.abs(wave - np.exp(-(k**2) * free_spread(chain, t) / 2)).max())
 
 
 def label_model_error(chain: Chain, start: Start, fields: FlowFields, times: Array) -> float:

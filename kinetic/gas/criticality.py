@@ -17,8 +17,6 @@ to 3.5, has no steady state from a size on that differs from L_c by 0.01 % up to
 of L_c, 9 % with two standard errors (``studies/critical_size.py``).
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

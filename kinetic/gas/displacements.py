@@ -66,8 +66,7 @@ def _with_stress(state: Background, gaps: Array, tau: float) -> LinearResponse:
         noise[u, Th] = means(np.pad(state.gap, 1, mode="edge"))[:, None] * below * loss
         noise[Th, u] = noise[u, Th].T
     generator[V, S] = state.steps.T * state.pressure / cells.rods[:, None]
-    strained = alpha * (alpha + 1) * excess / state.mean_gaps
-    generator[S, V] = -strained[:, None] * state.steps
+    generator[S, V] = -(alpha * (alpha + 1) * excess / state.mean_gaps)[:, None] * state.steps
     generator[S, S] = -np.eye(K) / tau
     scale = np.append(plain.scale, np.ones(K))
     return LinearResponse(generator, noise, scale, (*plain.fields, (K, 1)))

@@ -107,20 +107,19 @@ class _Equation:
         self.gaussian = np.exp(-np.add.outer(places**2, v.points**2) / 2) / (2 * math.pi)
         self.number = np.outer(2 * y.weights[_PLACES:], v.weights)
         self.energy = self.number * v.points**2
-        each = np.eye(_PLACES)
         # At -y lies what is at y with the opposite velocity.
         right, left = y.slope[_PLACES:, _PLACES:], y.slope[_PLACES:, _PLACES - 1 :: -1]
         moved = np.kron(right, np.diag(v.points)) + np.kron(left, np.diag(v.points)[:, ::-1])
         pulled = np.kron(np.diag(places), v.slope)
-        self.fixed = moved - pulled - damping * np.kron(each, v.slope * v.points)
+        self.fixed = moved - pulled - damping * np.kron(np.eye(_PLACES), v.slope * v.points)
         apart = np.subtract.outer(v.points, v.points)
         self.kernel = np.abs(apart) * apart * v.weights
 
     def newton_step(self, f: Array, tau: float, made: float) -> tuple[Array, float, float]:
         """Return the changes of f, of tau, and of the points made.
 
-        The grid loses or makes a few points, for which a source in the shape of the Gaussian is the
-        unknown of the equation that the others make superfluous.
+        The grid loses or makes a few points. One equation follows from the others, and the strength
+        of a source in the shape of the Gaussian is the unknown in its place.
         """
         v, cells = self.v, f.size
         push = f @ self.kernel.T

@@ -187,8 +187,7 @@ def _generator(state: Background) -> Array:
     A[Th, Th] = -np.diag(2 * medium.damping + 1.5 * loss / Theta)
     n, Theta, b = (means(values) for values in (state.density, Theta, state.strength))
     A[Th, q] = -step[:, some] * n / apart[:, None]
-    across = np.diff(np.eye(apart.size), axis=0)
-    A[q, Th] = -3 * (n * Theta / cells.rods[some])[:, None] * across
+    A[q, Th] = -3 * (n * Theta / cells.rods[some])[:, None] * np.diff(np.eye(apart.size), axis=0)
     A[q, q] = -np.diag(3 * medium.damping + b * medium.moments.decay * n * np.sqrt(Theta))
     return A
 

@@ -19,8 +19,6 @@ walls, T is that of points in phase space (:mod:`.driven`). Other chains with e 
 closure, which is too cold at the ends if the damping is above 0.6 sqrt(k m).
 """
 
-from __future__ import annotations
-
 import xarray as xr
 from threadpoolctl import threadpool_limits
 
@@ -94,10 +92,9 @@ def steady_state(chain: Chain, *, correlations: bool = True) -> xr.Dataset:
     check_steady_state(chain, correlations=correlations)
     correlated = correlations and chain.restitution <= 1 and chain.size >= _FEWEST_CORRELATED
     solve = in_agreement if correlated else mean_field
-    cells = make_cells(chain.size, walled=chain.box > 0)
     try:
         with threadpool_limits(limits=1, user_api="blas"):  # small matrices: more only wait
-            found = solve(chain, cells)
+            found = solve(chain, make_cells(chain.size, walled=chain.box > 0))
     except NoSteadyStateError as error:
         raise ValueError(f"the gas has no steady state that could be found: {error}") from error
     # Below e = 1 the mean field was not measured.

@@ -98,8 +98,7 @@ def _own_widths(chain: Chain, found: Steady, T: Array) -> Array:
     if found.labels is not None:
         law = exchangeable(chain.size)
         score, place = found.labels.score, found.labels.place
-        inside = np.clip(law.places, score[0], score[-1])
-        y = PchipInterpolator(score, place)(inside)
+        y = PchipInterpolator(score, place)(np.clip(law.places, score[0], score[-1]))
         return np.sqrt(law.mean(y**2) - law.mean(y) ** 2)
     mean = float(T.mean())
     elastic = elastic_rods(at_temperature(chain, mean * chain.temperature))
@@ -125,11 +124,10 @@ def _over_positions(chain: Chain, found: Steady, rods: Rods) -> tuple[dict[str, 
     T = np.interp(number, middles, rods.velocity_variance)
     fluid = np.gradient(np.interp(x, places, label), x)
     density, count = over_positions(chain, x, shapes) if shapes else (fluid, number)
-    displacement = x - (2 * R + chain.lattice_gap) * (number - chain.size / 2)
     variables: Variables = {
         "density": ("x", density),
         "label": ("x", count),
-        "displacement": ("x", displacement),
+        "displacement": ("x", x - (2 * R + chain.lattice_gap) * (number - chain.size / 2)),
         "velocity_variance": ("x", W**2 * T),
         "heat_flux": ("x", _heat_flux(chain, found, number)),
     }
@@ -167,10 +165,9 @@ def _heat_flux(chain: Chain, found: Steady, label: Array) -> Array:
         T, P = mean.contact_temperature, mean.force[cells.inner]
         through = conductance(found.medium, cells, T, P, found.closure.strength(T))
         where, flux = cells.contacts, -through * np.diff(mean.temperature)
-    W = chain.free_velocity_width
     places, ends = (np.pad(field, 1) for field in (where, flux))
     places[-1] = chain.size
-    unit = chain.mass * W**3 / (2 * found.medium.length)
+    unit = chain.mass * chain.free_velocity_width**3 / (2 * found.medium.length)
     return np.asarray(unit * np.interp(label, places, ends))
 
 

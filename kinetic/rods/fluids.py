@@ -1,7 +1,5 @@
 """The rods of a theory that describes the chain as a fluid."""
 
-from __future__ import annotations
-
 import json
 import math
 from typing import Any

@@ -118,11 +118,10 @@ def rods_of(chain: Chain, points: LabelledPoints, temperature: float) -> RodPlac
     # Beyond the last points, rods are moved as these are.
     inside = np.clip(score, *points.ends)
     places, slope = points.at(inside)
-    inner = inside == score
     at_rest = rest.places.copy()
     for beyond, end in zip((score < inside, score > inside), points.ends, strict=True):
         at_rest[beyond] = stationary(cold).unit * stationary(cold).at(ndtr(end) - 0.5)
-    stretch = np.where(inner, slope / slope_at_rest, 1.0)
+    stretch = np.where(inside == score, slope / slope_at_rest, 1.0)
     return _mapped(rest, rest.places + (places - at_rest), stretch)
 
 

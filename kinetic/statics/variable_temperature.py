@@ -112,8 +112,7 @@ def _end(warmth: Warmth, crowd: float, lam: float) -> float:
 
 def _newton(basis: Basis, P: Array, warmth: Warmth, crowd: float, lam: float) -> Array:
     """Solve the discrete equations from a guess."""
-    x = basis.global_coordinates()[0]
-    fields = {"warmth": warmth(x), "crowd": crowd, "lam": lam}
+    fields = {"warmth": warmth(basis.global_coordinates()[0]), "crowd": crowd, "lam": lam}
     end = float(basis.mesh.p[0].max())
     outflow = basis.zeros()
     places = basis.doflocs[0]
@@ -181,8 +180,7 @@ def _assemble(
 
     vertices = basis.mesh.p[0]
     count = CubicHermiteSpline(vertices, label / label[-1], share(vertices))
-    farthest = s * vertices[-1] - float(chain.anchors[-1])
-    x = position_grid(chain, farthest)
+    x = position_grid(chain, s * vertices[-1] - float(chain.anchors[-1]))
     within = np.clip(x / s, vertices[0], vertices[-1])
     # Displacements are computed by label: as differences of positions of many rods they would be
     # lost in rounding.

@@ -92,9 +92,8 @@ def solve_wright_closure(chain: Chain, profile: Profile) -> xr.Dataset:
 def _edges(chain: Chain, profile: Profile) -> Array:
     """Return the nodes inside the profile, with room for rods that spread further than usual."""
     wide = position_grid(chain, 2 * thermal_reach(chain) + float(chain.anchors[-1]))
-    inside = wide[(wide > profile.left) & (wide < profile.right)]
     ends = [end for end in (profile.left, profile.right) if abs(end) < wide[-1]]
-    return np.unique(np.concatenate([inside, ends]))
+    return np.unique(np.concatenate([wide[(wide > profile.left) & (wide < profile.right)], ends]))
 
 
 def _pull(chain: Chain, profile: Profile, x: Array) -> Array:

@@ -80,6 +80,7 @@ flow(displaced(five, 200.0), frame="eulerian") | up to ... times the free veloci
 flow(moved.assign(flow_velocity=moved.flow_velocity + 100), frame="eulerian") | times the free vel
 flow(displaced(five, 30.0), frame="eulerian", **hot) | too fast
 flow(at_rest(boxed.replace(box=0, amplitude=50)), boxed) | between the walls must add up to
+flow(at_rest(boxed).isel(x=[0, -1]).assign(label=("x", [0.0, 5.0])), boxed) | x needs nodes
 flow(at_rest(boxed.replace(box=1010)), boxed.replace(box=1010)) | too far out; use frame='eulerian'
 flow(at_rest(boxed.replace(box=20)), boxed, **hot) | a rod at a wall at the start; use frame='euler
 flow(chain=boxed.replace(mass_ratio=3, restitution=0.9), **hot) | two masses in inelastic collisions
