@@ -78,7 +78,7 @@ def breathing_cloud(
     s, W = chain.thermal_length, chain.free_velocity_width
     damping = chain.damping * s / (chain.mass * W)
 
-    def equations(time: float, state: Array) -> list[float]:
+    def rates(time: float, state: Array) -> list[float]:
         place, speed, width, rate, heat = state
         spreading = heat / width - width - damping * rate
         warming = -2 * heat * rate / width - 2 * damping * (heat - 1) if evolving else 0.0
@@ -86,9 +86,7 @@ def breathing_cloud(
 
     start = [shift / s, 0.0, stretch, 0.0, hot / free]
     scaled = times * W / s
-    solution = solve_ivp(
-        equations, (0.0, scaled[-1]), start, "DOP853", scaled, rtol=1e-11, atol=1e-12
-    )
+    solution = solve_ivp(rates, (0, scaled[-1]), start, "DOP853", scaled, rtol=1e-11, atol=1e-12)
     if not solution.success:
         raise ValueError(f"the cloud could not be followed: {solution.message}")
     place, width, heat = s * solution.y[0], s * solution.y[2], free * solution.y[4]

@@ -240,9 +240,7 @@ def _read_closure(
     return chain, frozen, variance, kind
 
 
-def _result(
-    chain: Chain, fields: FlowFields, times: Array, method: dict[str, str | int]
-) -> xr.Dataset:
+def _result(chain: Chain, fields: FlowFields, times: Array, method: dict[str, Any]) -> xr.Dataset:
     """Put the fields into the common vocabulary, with sums that show their accuracy."""
     along, particles = ("time", "x"), ("time", "particle")
     reached = len(fields.density)

@@ -51,9 +51,8 @@ def make_cells(state: Stationary, exponent: int, number: int | None) -> LabelCel
         shares, density = np.pad(shares, 1, mode="edge"), pressure
         faces, eta_faces = bounds, np.concatenate([[-end], eta_faces, [end]])
     distance = np.diff(eta)
-    return LabelCells(
-        labels, shares, faces, eta, density * distance, (eta_faces - eta[:-1]) / distance
-    )
+    weights = (eta_faces - eta[:-1]) / distance
+    return LabelCells(labels, shares, faces, eta, density * distance, weights)
 
 
 def mirrored(values: Array, end: float) -> Array:

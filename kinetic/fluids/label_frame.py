@@ -89,10 +89,8 @@ def solve_on_labels(
 
     def watch(values: Array, time: float) -> bool:
         """Refuse what the equations do not describe; return whether the energy diverges."""
-        if problem := _breakdown(cells, values):
-            raise ValueError(
-                f"the hydrodynamic equations do not hold beyond t = {time:g}: {problem}"
-            )
+        if why := _breakdown(cells, values):
+            raise ValueError(f"the hydrodynamic equations do not hold beyond t = {time:g}: {why}")
         return _energy(cells, values, walled) > most
 
     # In the unit of time of `solve`: py-pde drops outputs that are less than 1e-8 units apart.

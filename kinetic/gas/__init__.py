@@ -20,15 +20,14 @@ v^2 of two neighbours per time, and the third moment decays at the rate r,
 
 where E and c are ``energy`` and ``decay`` of :mod:`.collision_moments`. In time r has one more
 term, n sqrt(T) |T_l|/T, which bounds q where the temperature changes within the free flight of a
-rod. phi = P/(n T) is 1 for points. With a gap springs carry a part of the load
-(:mod:`.elastic_contacts`).
+rod. phi = P/(n T) is 1 for points, and less with a gap (:mod:`.elastic_contacts`).
 
 In the mean field, where colliding rods are independent, a = 1 and h = 0. The fluctuations of
 the same equations give a(l) and h(l), the part of T that whole neighbourhoods share
 (:mod:`.closure`, :mod:`.fluctuations`).
 
 **Ends.** Beyond an open end there is no rod: P = 0, q = 0. A wall is a contact at which P acts on
-the flow and where y is given; the loss there is (1 - e_w) P sqrt(8/pi) sqrt(T/e_w).
+the flow and where y is given, with a loss (:mod:`.mean_state`).
 
 **What it contains.** At e = 1 the steady state is T = 1, q = 0 and P_l = -F, the force balance of
 the paper. In time (:mod:`crazybilliards.kinetic.fluids`) without q it is the paper's fluid.

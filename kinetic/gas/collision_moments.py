@@ -40,7 +40,7 @@ import numpy as np
 
 from crazybilliards.model.arrays import Array
 
-_LARGEST = 1e6
+_MOST = 1e6
 _NODES = 24  # exact for polynomials up to this degree in w^2 and in v + u; 6 is needed
 
 
@@ -56,10 +56,8 @@ class CollisionMoments(NamedTuple):
 
 def moments_of_collisions(restitution: float) -> CollisionMoments:
     """Return the moments for a restitution from 0 to a million; all vanish at 1."""
-    if restitution > _LARGEST:  # to the sixth power it would be beyond doubles
-        raise ValueError(
-            f"the gas needs a restitution of at most {_LARGEST:g}, got {restitution:g}"
-        )
+    if restitution > _MOST:  # to the sixth power it would be beyond doubles
+        raise ValueError(f"the gas needs a restitution of at most {_MOST:g}, got {restitution:g}")
     share = (1 - restitution) / 2
 
     def exchanged(v: Array, u: Array) -> tuple[Array, Array]:
