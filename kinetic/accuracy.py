@@ -30,8 +30,7 @@ _FACTOR_OF_LOSS, _DIFFERENCE = 2.6, 0.26
 _SAME = 5e-3  # relative
 _SHORTEST = 21.0  # s/R in the table of the force balance
 _OF_THE_GRID = 1e-3  # at e = 1, where the gas is exact but for its cells
-# Of the force balance the largest of 800 boxes at e = 1, without a gap or without springs. With
-# both it may be twice as large.
+# Of the force balance the largest of 800 boxes at e = 1; with gap and springs it may be twice that.
 _IN_A_BOX = 0.18
 # Of the chains and starts in time: L, Gamma, what y was multiplied by, and the shift in s.
 _IN_TIME = {"L": (20, 100), "Gamma": (0.3, 1.5), "stretch": (0.8, 1.3), "shift": (-2, 2)}
@@ -103,8 +102,7 @@ def _of_steady_state(chain: Chain) -> Accuracy:
             return Accuracy()
     near = measured[_near(measured, place, {**_FACTORS, "x": _FACTORS_OF_X.get(kind, 1.1)})]
     found = Accuracy(*near[list(Accuracy._fields)].max())
-    # Every chain was measured with one s/R, on which its density depends: that of all with such a
-    # size and restitution counts.
+    # Of one s/R each, on which the density depends: all of such a size and restitution count.
     alike = measured[_near(measured, place, {"L": _FACTORS["L"]})] if len(near) else near
     return found._replace(density=float(alike.density.max()))
 

@@ -154,8 +154,7 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     label = _numbers(start, "label") if "label" in start else rods
     label = label - label[0]
     if density.max() >= chain.close_packed_density:
-        # The integral over narrow spikes is rough. A label that does not belong to the density is
-        # of no use.
+        # The integral over narrow spikes is rough, and a label may not belong to the density.
         counted = label if np.isclose(label[-1], rods[-1], rtol=0.1) else rods
         crowded = np.interp(x + 2 * chain.radius, x, counted) - counted > _CROWDED
         raise ValueError(

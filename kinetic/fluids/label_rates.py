@@ -80,8 +80,7 @@ def label_rate(fields, constants):  # type: ignore[no-untyped-def]
     for i in range(cells):
         pressure, theta, d, density = 0.0, 1.0, 1.0, 0.0
         if i < cells - 1:
-            # Cells may cross in trial stages of an integrator. The rates stay finite and drive them
-            # back.
+            # Cells may cross in trial stages of an integrator. Finite rates drive them back.
             d = max(eta[i + 1] - eta[i], CLOSEST * distance[i])
             density = kappa[i] / d
             if thermal:

@@ -3,15 +3,14 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import length_unit
 from crazybilliards.model import Chain
 from crazybilliards.model.arrays import Array
 
-# Widths of a cell, by default and at most, in units of what it has to resolve (``_finest``). With
-# the widest cells the scheme's error is 0.01 to 0.03 of s.
+# Widths of a cell, by default and at most, over what it has to resolve. With the widest cells the
+# scheme's error is 0.01 to 0.03 of s.
 _CELL, _WIDEST_CELL = 0.1, 0.5
 _MOST_BY_DEFAULT = 50_000
 MOST_CELLS = 100_000
@@ -32,7 +31,11 @@ def make_faces(
     swing = float(np.hypot(u, start.velocity(start.x)[populated] / W).max())
     half = (chain.radius + chain.lattice_gap / 2) * L / s + wider * max(_ROOM, swing + _MARGIN)
     half = min(half, chain.box / (2 * s) if chain.box else math.inf)
-    finest = _finest(chain, start, duration, populated) / s
+    # Cells resolve the thermal length or, if shorter, all rods or the waves of a steep start.
+    rods = float(np.ptp(start.x[populated]))
+    most, slope = (np.abs(start.label(start.x[populated], order)).max() for order in (1, 2))
+    steep = float(most / slope) if slope > 0 else math.inf
+    finest = min(s, rods / 20, max(W * duration, steep, rods / 100)) / s
     if number is None:
         number = min(math.ceil(2 * half / (_CELL * finest)), _MOST_BY_DEFAULT)
     enough = 2 * half / (_WIDEST_CELL * finest)
@@ -43,15 +46,6 @@ def make_faces(
             f"lengths wide, {_WIDEST_CELL * finest:.3g} at most resolve the flow; {advice}"
         )
     return s * np.linspace(-half, half, number + 1)
-
-
-def _finest(chain: Chain, start: Start, duration: float, populated: NDArray[np.bool_]) -> float:
-    """Return the thermal length or, if shorter, that of all rods or of a steep start's waves."""
-    rods = float(np.ptp(start.x[populated]))
-    density, slope = (np.abs(start.label(start.x[populated], order)).max() for order in (1, 2))
-    steep = float(density / slope) if slope > 0 else math.inf
-    waves = chain.free_velocity_width * duration
-    return min(length_unit(chain), rods / 20, max(waves, steep, rods / 100))
 
 
 def starting_fields(chain: Chain, start: Start, faces: Array, *, thermal: bool) -> dict[str, Array]:

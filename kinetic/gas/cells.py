@@ -22,22 +22,9 @@ class Cells(NamedTuple):
     centres: Array  # label of each, from 0 to L, shape (M,)
     contacts: Array  # label of the contact between two, shape (M - 1,)
     distances: Array  # from centre to centre, shape (M - 1,)
-    to_wall: float  # from the outermost centres to a wall
+    all_labels: Array  # of all contacts, 0 and L being walls, (K,)
+    all_distances: Array  # across all contacts, (K,)
     walled: bool
-
-    @property
-    def all_distances(self) -> Array:
-        """Distances across all contacts, (K,)."""
-        if not self.walled:
-            return self.distances
-        return np.pad(self.distances, 1, constant_values=self.to_wall)
-
-    @property
-    def all_labels(self) -> Array:
-        """Labels of all contacts, 0 and L being walls, (K,)."""
-        if not self.walled:
-            return self.contacts
-        return np.pad(self.contacts, 1, constant_values=(0.0, self.rods.sum()))
 
     @property
     def inner(self) -> slice:
@@ -73,8 +60,14 @@ def cells_of_points(size: int, *, walled: bool = False) -> Cells:
 def _between(ends: Array, beyond: float, walled: bool) -> Cells:
     """Return cells between ends. ``beyond``: rods from the outermost ends to a wall."""
     ends = (ends + ends[-1] - ends[::-1]) / 2  # symmetric but for rounding
-    rods, centres = np.diff(ends), means(ends)
-    return Cells(rods, centres, ends[1:-1], np.diff(centres), rods[0] / 2 + beyond, walled)
+    rods, centres, labels = np.diff(ends), means(ends), ends[1:-1]
+    cells = Cells(rods, centres, labels, np.diff(centres), labels, np.diff(centres), walled)
+    if not walled:
+        return cells
+    return cells._replace(
+        all_labels=np.pad(labels, 1, constant_values=(0.0, rods.sum())),
+        all_distances=np.pad(cells.distances, 1, constant_values=rods[0] / 2 + beyond),
+    )
 
 
 def means(values: Array) -> Array:

@@ -58,27 +58,15 @@ def moments_of_collisions(restitution: float) -> CollisionMoments:
     """Return the moments for a restitution from 0 to a million; all vanish at 1."""
     if restitution > _MOST:  # to the sixth power it would be beyond doubles
         raise ValueError(f"the gas needs a restitution of at most {_MOST:g}, got {restitution:g}")
+    v, u, average = _colliding()
     share = (1 - restitution) / 2
-
-    def exchanged(v: Array, u: Array) -> tuple[Array, Array]:
-        return v - share * (v - u), u + share * (v - u)
-
-    def covariance(psi: Callable[[Array], Array], phi: Callable[[Array], Array]) -> float:
-        def made(v: Array, u: Array) -> Array:
-            after, partner = exchanged(v, u)
-            return psi(after) * phi(partner) - psi(v) * phi(u)
-
-        return _average(made)
-
-    def lost(v: Array, u: Array) -> Array:
-        return -(_third(exchanged(v, u)[0]) - _third(v)) * (_third(v) + _third(u)) / 6
-
+    after, partner = v - share * (v - u), u + share * (v - u)
     return CollisionMoments(
         energy=2 / math.sqrt(math.pi) * (1 - restitution**2),
-        temperature=covariance(_second, _second),
-        heat=covariance(_third, _third),
-        velocity_heat=covariance(lambda v: v, _third),
-        decay=_average(lost),
+        temperature=average(_second(after) * _second(partner) - _second(v) * _second(u)),
+        heat=average(_third(after) * _third(partner) - _third(v) * _third(u)),
+        velocity_heat=average(after * _third(partner) - v * _third(u)),
+        decay=average(-(_third(after) - _third(v)) * (_third(v) + _third(u)) / 6),
     )
 
 
@@ -88,12 +76,10 @@ def decay_of_two_masses(mass_ratio: float) -> float:
     heavy = mass_ratio * light
     d = (light - heavy) / (light + heavy)
     r = math.sqrt(1 - d**2)
-
-    def lost(v: Array, u: Array) -> Array:
-        before = _third(v) + _third(u)
-        return (before - _third(d * v + r * u) - _third(r * v - d * u)) * before / 12
-
-    return _average(lost, 1 / math.sqrt(light), 1 / math.sqrt(heavy))
+    v, u, average = _colliding(1 / math.sqrt(light), 1 / math.sqrt(heavy))
+    before = _third(v) + _third(u)
+    lost = before - _third(d * v + r * u) - _third(r * v - d * u)
+    return average(lost * before / 12)
 
 
 def _second(v: Array) -> Array:
@@ -104,8 +90,8 @@ def _third(v: Array) -> Array:
     return v**3 - 3 * v
 
 
-def _average(function: Callable[[Array, Array], Array], a: float = 1.0, b: float = 1.0) -> float:
-    """Return < |a v - b u| function(v, u) > over two Gaussians of variance 1.
+def _colliding(a: float = 1.0, b: float = 1.0) -> tuple[Array, Array, Callable[[Array], float]]:
+    """Return velocities v and u, and < |a v - b u| f(v, u) > as a function of f there.
 
     It is exact for polynomials. (a v - b u)/g = R and (b v + a u)/g = S, with g^2 = a^2 + b^2, are
     independent Gaussians; int over R > 0 of R exp(-R^2/2) is that of exp(-t) over t = R^2/2.
@@ -114,8 +100,9 @@ def _average(function: Callable[[Array, Array], Array], a: float = 1.0, b: float
     t, t_weights = np.polynomial.laguerre.laggauss(_NODES)
     g = math.hypot(a, b)
     weights = S_weights[:, None] * t_weights / (2 * math.pi) * g
-    total = 0.0
-    for R in (np.sqrt(2 * t), -np.sqrt(2 * t)):
-        v, u = (b * S[:, None] + a * R) / g, (a * S[:, None] - b * R) / g
-        total += float((weights * function(v, u)).sum())
-    return total
+    S, R = S[:, None], np.stack([np.sqrt(2 * t), -np.sqrt(2 * t)])[:, None]
+
+    def average(values: Array) -> float:
+        return float((weights * values).reshape(2, -1).sum(axis=1).sum())
+
+    return (b * S + a * R) / g, (a * S - b * R) / g, average

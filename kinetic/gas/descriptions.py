@@ -146,8 +146,8 @@ class Descriptions:
     def _points(self, labels: Labels, medium: Medium, closure: Closure, spread: Array) -> MeanState:
         """Return the state on fine cells, averaged over the labels at which rods are found."""
         cells, fine = self.cells, labels.fine
-        # A point meets L - 1 of L. In the mean field T is that of the motion about the centre of
-        # mass, which collisions leave alone: its share 1/L of the noise is missing as well.
+        # A point meets L - 1 of L. In the mean field T is that about the centre of mass and lacks a
+        # share 1/L of the noise as well.
         met = 1.0 if self.mean_field else 1 - 1 / medium.size
         along = closure.at(cells.contacts, fine.contacts)
         shared = closure.at(cells.contacts, fine.centres).collective

@@ -63,6 +63,6 @@ def _of_rods(chain: Chain) -> tuple[Array, Array]:
     below = -np.concatenate([[0.0], np.cumsum(force)])
     beyond = np.concatenate([[0.0], np.cumsum(force[::-1])])[::-1]
     ends = chain.walls if chain.box else (place[0], place[-1])
-    gap = np.diff(np.concatenate([[ends[0]], place, [ends[1]]]))
+    gap = np.diff(place, prepend=ends[0], append=ends[1])
     share = ((below + beyond) / 2 + at_wall) * gap / chain.temperature
     return np.arange(chain.size + 1.0), np.maximum(share, _LEAST)

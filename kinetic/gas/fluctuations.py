@@ -76,12 +76,8 @@ class Background(NamedTuple):
     def parts(self) -> tuple[slice, slice, slice, slice]:
         """Places of u, V (cells), Theta (contacts) and q (cells but those at open ends)."""
         M, K = self.cells.rods.size, self.gap.size
-        return (
-            slice(0, M),
-            slice(M, 2 * M),
-            slice(2 * M, 2 * M + K),
-            slice(2 * M + K, 2 * M + 2 * K - 1),
-        )
+        Th = slice(2 * M, 2 * M + K)
+        return slice(0, M), slice(M, 2 * M), Th, slice(Th.stop, Th.stop + K - 1)
 
     @property
     def steps(self) -> Array:
@@ -231,11 +227,7 @@ def _of_cell_means(cells: Cells, strength: Array) -> Array:
 
 def _mirror_basis(size: int, sign: int) -> Array:
     """Return the orthonormal basis of vectors whose mirror image is ``sign`` times themselves."""
-    half = size // 2
-    basis = np.zeros((size, half + (size % 2 if sign == 1 else 0)))
-    rows = np.arange(half)
-    basis[rows, rows] = np.sqrt(0.5)
-    basis[size - 1 - rows, rows] = sign * np.sqrt(0.5)
-    if basis.shape[1] > half:
-        basis[half, half] = 1.0
-    return basis
+    half, whole = size // 2, np.eye(size)
+    basis = ((whole + sign * whole[::-1]) * np.sqrt(0.5))[:, : size - half if sign == 1 else half]
+    basis[half, half:] = 1.0  # the middle one of an odd number
+    return np.asarray(basis)

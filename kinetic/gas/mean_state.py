@@ -165,8 +165,7 @@ def heated(
         balance, middle = forces(T), means(T)
         P, a = balance.force[cells.inner], strength(middle)
         conducted = conductance(medium, cells, middle, P, a)
-        # Conduction and loss are linear in T with the coefficients of the last one. Of the loss one
-        # half is taken for T of each side, and each side has a half of it.
+        # Linear in T with the last coefficients. Each side has half of the loss, half by its own T.
         lost = a * medium.moments.energy * P * np.sqrt(middle) / middle * cells.distances / 4
         taken = noise + sum(np.pad(conducted + lost, each) for each in ((0, 1), (1, 0)))
         if cells.walled:
@@ -198,4 +197,4 @@ def _solve_banded(diagonal: Array, beside: Array, right: Array) -> Array:
 
 def _steps(y: Array, wall: float) -> Array:
     """Return the differences of neighbouring places, to walls at -wall and wall as well."""
-    return np.diff(np.concatenate([[-wall], y, [wall]]) if np.isfinite(wall) else y)
+    return np.diff(y, prepend=-wall, append=wall) if np.isfinite(wall) else np.diff(y)

@@ -190,8 +190,7 @@ def _of_pairs(chain: Chain, found: Steady, of: Fluctuations, rods: Rods) -> Vari
     }
     if chain.size <= _MOST_COVARIANCES:
         covariance = of_rods(of.pairs.velocity, cells)
-        # A rod with itself has W_v^2, with the local part, and neighbours half of what their last
-        # collision left. Two other rods have h alone.
+        # With the local part, and half of what the last collision of neighbours left.
         covariance[:, 0], covariance[:-1, 1] = variance, shared
         variables["velocity_covariance"] = (("particle", "separation"), W**2 * covariance)
     return variables

@@ -182,8 +182,7 @@ def _assemble(
     count = CubicHermiteSpline(vertices, label / label[-1], share(vertices))
     x = position_grid(chain, s * vertices[-1] - float(chain.anchors[-1]))
     within = np.clip(x / s, vertices[0], vertices[-1])
-    # Displacements are computed by label: as differences of positions of many rods they would be
-    # lost in rounding.
+    # By label: as differences of positions of many rods displacements would be lost in rounding.
     shares, first = np.unique(label / label[-1] - 0.5, return_index=True)
     at_vertices = vertices[first] - (crowd + chain.lattice_gap * L / s) * shares
     mean = s * PchipInterpolator(shares, at_vertices)(chain.rank / L)
