@@ -56,15 +56,6 @@ def test_a_measured_chain_states_no_less_than_its_row():
             assert not row[name] or found[name] >= float(row[name]), (row, name)
 
 
-def test_between_measured_chains_the_largest_error_nearby_counts():
-    """It is known between them, and of chains alike: a mean of two has no less than both."""
-    for kind in ({}, {"gap": 0.5}, {"spring": "quadratic"}):
-        near, far = (stated(on_springs(L, 0.75, 0.49, 1.0, **kind)) for L in (30, 100))
-        between = stated(on_springs(55, 0.75, 0.49, 1.0, **kind))
-        assert np.isfinite(between[:5]).all()
-        assert between.velocity_width >= min(near.velocity_width, far.velocity_width)
-
-
 @pytest.mark.parametrize(
     "changes",
     [
