@@ -31,6 +31,7 @@ function use(control, entry = null) {
   if (control.tagName === 'BUTTON') return control.click();
   if (entry) control.value = entry.value;
   else if (control.tagName === 'SELECT') control.selectedIndex++;
+  else if (control.step === 'any') control.value = 1;
   else if (Number(control.value) > Number(control.min)) control.stepDown();
   else control.stepUp();
   for (const type of ['input', 'change'])
@@ -88,6 +89,11 @@ def rows(browser, number):
     going += "arguments[1].dispatchEvent(new Event('change', {bubbles: true}));"
     browser.execute_script(going, number, control(browser, "first-picture"))
     return text(browser, "said")
+
+
+def show(browser):
+    """Skip the prediction that a challenge or question asks for."""
+    press(browser, control(browser, "reveal"))
 
 
 def challenges(browser):

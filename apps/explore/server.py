@@ -3,8 +3,8 @@
 Other machines, and other sites in the same browser, could reach an open port. The server therefore
 listens on the loopback address unless a flag allows another one, and answers only under names of
 this machine and those that the user added, under any port, which may have been forwarded. Theories
-are solved for the page alone: a page of another site cannot send its header. A fixed list of files
-is served, nothing is written, and nothing is kept of a visitor.
+are solved for the page alone, one at a time: a page of another site cannot send its header. A fixed
+list of files is served, nothing is written, and nothing is kept of a visitor.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from functools import cache, partial
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
-from threading import Thread
+from threading import Lock, Thread
 from typing import Any
 
-from crazybilliards.apps.explore.theory import solve
-
 _KINDS = {"css": "text/css", "js": "text/javascript"}
+_TURN = Lock()  # one theory is solved at a time, for all pages
+_PATIENCE = 60  # s that a visitor waits for the theories of others
 _LOCAL = frozenset({"localhost", "127.0.0.1", "[::1]"})
 _HEADERS = {
     "Content-Security-Policy": "default-src 'self'; img-src 'self' data:; base-uri 'none'; "
@@ -91,11 +91,18 @@ class _Handler(BaseHTTPRequestHandler):
         if sender not in (("chain", "same-origin"), ("chain", None)):
             self._send_text(HTTPStatus.FORBIDDEN, "Theories are solved for the page only.")
             return
-        answer = solve(query, self._is_gone)
-        if answer is None:
-            self.close_connection = True  # nobody waits for it
-        else:
-            self._send(HTTPStatus.OK, "application/json", json.dumps(answer).encode())
+        from crazybilliards.apps.explore.theory import answer  # the page comes before its imports
+
+        found = {"refused": "the theories of others are being solved"}
+        if _TURN.acquire(timeout=_PATIENCE):
+            try:
+                if self._is_gone():
+                    self.close_connection = True
+                    return
+                found = answer(query)
+            finally:
+                _TURN.release()
+        self._send(HTTPStatus.OK, "application/json", json.dumps(found).encode())
 
     def _is_gone(self) -> bool:
         """Return whether the browser has closed the connection."""

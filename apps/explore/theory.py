@@ -1,29 +1,17 @@
-"""The theory of a chain for the page, solved in a process of its own, one at a time."""
+"""The theory of a chain for the page."""
 
 from __future__ import annotations
 
-import json
 import math
-import signal
-import sys
-import time
 import warnings
-from collections.abc import Callable
-from contextlib import suppress
-from subprocess import PIPE, Popen, TimeoutExpired
-from threading import Lock
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from urllib.parse import parse_qsl
 
-from crazybilliards.model.process import end_with_parent
+from crazybilliards.comparison.coverage import smooth
+from crazybilliards.comparison.stationary_theories import THEORIES, StationaryTheory, theory_of
+from crazybilliards.kinetic.accuracy import UnmeasuredWarning
+from crazybilliards.model import Chain
 
-if TYPE_CHECKING:
-    from crazybilliards.comparison.stationary_theories import StationaryTheory
-    from crazybilliards.model import Chain
-
-_TURN = Lock()  # one computes at a time, for all pages
-_PATIENCE = 120  # s that a theory may take, and that a visitor waits for the theories of others
-_LOOK = 0.2  # s between two looks whether the visitor still waits
 _MOST_RODS = 200  # of the page
 _MOST_POINTS = 500  # of a curve
 # Errors that a theory states, by what the page calls them.
@@ -33,43 +21,8 @@ _KINDS = {"size": int, "restitution": float, "amplitude": float, "damping": floa
 Answer = dict[str, Any]
 
 
-def solve(query: str, is_gone: Callable[[], bool]) -> Answer | None:
-    """Return the :func:`answer` to a query from another process, None if the visitor is gone.
-
-    The process is killed when the visitor goes, and when it takes too long.
-    """
-    if not _TURN.acquire(timeout=_PATIENCE):
-        return {"refused": "the theories of others are being solved"}
-    try:
-        if is_gone():
-            return None
-        command = [sys.executable, "-m", "crazybilliards.apps.explore.theory", query]
-        with Popen(command, stdout=PIPE) as process:
-            try:
-                return _wait_for(process, is_gone)
-            finally:
-                process.kill()
-    finally:
-        _TURN.release()
-
-
-def _wait_for(process: Popen[bytes], is_gone: Callable[[], bool]) -> Answer | None:
-    """Return what a process prints, None if the visitor goes before."""
-    end = time.monotonic() + _PATIENCE
-    while time.monotonic() < end:
-        if is_gone():
-            return None
-        with suppress(TimeoutExpired):
-            text, _ = process.communicate(timeout=_LOOK)
-            ended: Answer = {"refused": "the computation ended without an answer"}
-            return ended if process.returncode else json.loads(text)
-    return {"refused": f"it takes longer than {_PATIENCE} s"}
-
-
 def read(query: str) -> Chain:
     """Return the chain of a query; a TypeError or ValueError says what is wrong with it."""
-    from crazybilliards.model import Chain
-
     texts = dict(parse_qsl(query, keep_blank_values=True))
     chain = Chain(**{name: _KINDS.get(name, str)(text) for name, text in texts.items()})
     if chain.size > _MOST_RODS:
@@ -86,9 +39,6 @@ def answer(query: str) -> Answer:
     widths, and the ``density`` as pairs of x and the share of time that a rod covers x, smoothed as
     in the paper.
     """
-    from crazybilliards.comparison.stationary_theories import THEORIES, theory_of
-    from crazybilliards.kinetic.accuracy import UnmeasuredWarning
-
     try:
         chain = read(query)
     except (TypeError, ValueError) as error:
@@ -118,8 +68,6 @@ def _why_none(chain: Chain, error: str) -> str:
 
 def _result(theory: StationaryTheory, chain: Chain) -> Answer:
     """Solve a theory, and return what the page draws and says of it."""
-    from crazybilliards.comparison.coverage import smooth
-
     solved = theory.solve(chain)
     density = smooth(solved).density
     points = density[:: -(-density.x.size // _MOST_POINTS)] * 2 * chain.radius
@@ -133,9 +81,3 @@ def _result(theory: StationaryTheory, chain: Chain) -> Answer:
             zip(points.x.values.tolist(), points.values.round(5).tolist(), strict=True)
         ),
     }
-
-
-if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server ends this process
-    end_with_parent()
-    print(json.dumps(answer(sys.argv[1])))

@@ -2,7 +2,6 @@
 
 import os
 
-import psutil
 import pytest
 from browser import CHROMIUM, DRIVER, chromium, served
 
@@ -13,12 +12,6 @@ def address():
         pytest.skip("sends a POSIX signal")
     with served() as address:
         yield address
-
-
-@pytest.fixture
-def solvers(address):
-    """Return a function that lists the processes that solve theories."""
-    return psutil.Process(address.process.pid).children
 
 
 @pytest.fixture(scope="package")

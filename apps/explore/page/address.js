@@ -13,6 +13,9 @@ const ChainAddress = (() => {
     return { ...USUAL, ...chain, ...SHOWN, first: pictures[0], second: pictures[1], speed };
   }
 
+  /* What a gas begins with where nothing else is asked for: room for its rods, and a speed at which it moves. */
+  const roomy = ({ size }) => ({ box: Math.max(USUAL.box, 4 * size), speed: 100 });
+
   /* What the address asks for by name, or why it is refused, or null if it asks for nothing; `controls`
      has a slider or list for each name. */
   function read(controls, { search, hash } = location) {
@@ -33,7 +36,11 @@ const ChainAddress = (() => {
   }
 
   /* The value of a text for a control, or what is wanted instead. */
-  function understood({ options, min, max, step }, text) {
+  function understood({ options, numbers, min, max, step }, text) {
+    if (numbers) {
+      const values = text.split("_").map((each) => (each.trim() === "" ? NaN : Number(each)));
+      return values.every(Number.isFinite) ? { value: values } : { wanted: "numbers with _ between them" };
+    }
     if (options) {
       const list = Array.from(options, (option) => option.value).filter(Boolean);
       return list.includes(text) ? { value: isNaN(text) ? text : Number(text) } : { wanted: list.join(" or ") };
@@ -46,6 +53,7 @@ const ChainAddress = (() => {
   /* Write what was chosen and what of it is changed `now`, and keep for a reload what is `solved`. */
   function write({ kind, id, ...chosen }, now, solved) {
     const begun = beginning(kind ? chosen : {}), given = kind ? [[kind, id]] : [];
+    if (now.prediction) given.push(["prediction", now.prediction]);
     for (const name of Object.keys(begun)) if (now[name] !== begun[name]) given.push([name, now[name]]);
     const setting = `#${new URLSearchParams(given.length ? given : [["size", now.size]])}`;
     history.replaceState({ solved }, "", location.pathname + setting);
@@ -58,5 +66,5 @@ const ChainAddress = (() => {
     chain.mass_ratio : `L = ${chain.size}, e = ${chain.restitution}, A = ${chain.amplitude}, ` +
     `γ = ${chain.damping}, g = ${chain.gap}, ${chain.spring} springs`);
 
-  return { USUAL, NAMES, SPRUNG, beginning, read, write, same, told };
+  return { USUAL, NAMES, SPRUNG, beginning, roomy, read, write, same, told };
 })();

@@ -13,11 +13,15 @@
   const pictures = { first: find("first-picture"), second: find("second-picture") };
   const stage = new ChainDrawing.Stage(find("stage")), shown = find("stage").ariaLabel;
   const solved = new Set(history.state?.solved); // challenges that are done, presets whose answer was seen
-  let chosen = OWN, rod = 1, judging = false, told = {}, described = 0; // `told`: of the theory of a chain
+  const SYMBOLS = { size: "L", restitution: "e", amplitude: "A", damping: "γ", gap: "g" };
+  let chosen = OWN, rod = 1, judging = false, described = 0;
+  let guess = null; // what is expected of the question: {values, at, shown}
+  const hidden = () => guess !== null && !guess.shown, predicted = () => guess?.values.every((each) => each !== null);
 
   function drawPlots() {
     judge();
-    const { state, measurement, history: energies } = world, theory = ChainTheory.of(state.chain);
+    const { state, measurement, history: energies } = world, theory = hidden() ? null : ChainTheory.of(state.chain);
+    if (!hidden()) ChainTheory.follow(state.chain, root.dataset.theory);
     const exact = ChainTheory.exactDensity(state.chain, measurement.coverage().map(([x]) => x));
     if (!exact && state.chain.restitution === 1 && state.chain.amplitude > 0 && !state.masses && !ChainFrames.running())
       setTimeout(draw, 450);
@@ -28,14 +32,29 @@
     const { restitution } = state.chain, gas = state.masses ? gauged() : null;
     const seen = { half: stage.half, measurement, history: energies, restitution, ...units, exact, theory, gas };
     for (const [name, list] of Object.entries(pictures)) {
-      const sentence = ChainPlots.pictures[list.value](find(name), stage.colour, seen);
-      if (calm || !find(name).ariaLabel) find(name).ariaLabel = sentence;
+      const canvas = find(name), { predict } = chosen, own = guess && predict.picture === list.value;
+      const on = own ? { guess, axes: predict, hidden: hidden() } : null;
+      const closed = hidden() && (predict.picture || predict.closed) ? { hidden: true } : null;
+      const sentence = ChainPlots.draw(list.value, canvas, stage.colour, seen, on ?? closed);
+      if (calm || !canvas.ariaLabel || hidden()) canvas.ariaLabel = sentence;
+      ChainPredicting.offer(canvas, own && hidden() ? guess : null);
+      if (own && !hidden()) compare(canvas.plot);
     }
     const scale = kicked ? `W = ${unit.toPrecision(2)} R/t₀.` : "Without noise there is no W.";
     find("status").textContent = `${scale} ${R.happening()}`;
     if (world.ranAway && world.pushed) breakOff("The chain ran away");
-    find("solve").textContent = ChainTheory.asked() ? "Stop" : "Solve the theory";
-    find("theory").textContent = (told.chain === state.chain && told.said) || theory?.said || "";
+    find("theory").textContent = theory?.said || (ChainTheory.asking() && !hidden() ? "The theory is being solved." : "");
+    answer();
+  }
+
+  /* Say how far the prediction is from what is measured, once the chain is as the question asks. */
+  function compare({ seen, drawn: [left, right] }) {
+    const { then = {}, of = "measured", y } = chosen.predict, { chain } = world.state, { settled } = world.measurement;
+    const other = Object.entries(then).filter(([name, value]) => chain[name] !== value);
+    const points = (seen[of] ?? []).map(([x, value]) => [(x - left) / (right - left), value]);
+    find("compared").textContent = !predicted() ? ""
+      : other.length ? `Your curve is for ${other.map(([name, value]) => `${SYMBOLS[name]} = ${value}`).join(", ")}.`
+        : settled || world.ranAway ? ChainPredicting.distance(guess, points, y[0] < 0) : "";
   }
 
   /* Show the gauge, the force on the walls, and return what the picture of the pressure needs. The law
@@ -43,9 +62,9 @@
   function gauged() {
     const { state, measurement, forces } = world, { box } = state.chain, law = ChainGas.law(state);
     const known = !chosen.secret || solved.has(chosen.id), { value, error } = measurement.force();
-    const few = measurement.blocks.length < 2, now = `${value.toPrecision(4)} ± ${error.toPrecision(1)}`;
-    const told = known ? `, exact: L T/(X − 2RL) = ${law.toPrecision(4)}` : "";
-    find("gauge").textContent = `Force on a wall [M R/t₀²]: ${few ? "not measured yet" : now}${told}.`;
+    const few = measurement.blocks.length < 2, mean = few ? "not measured yet" : `${value.toPrecision(4)} ± ${error.toPrecision(1)}`;
+    const told = known ? `, exact: L T/(X − 2RL) = ${law.toPrecision(4)}` : "", now = measurement.momentary().toFixed(2);
+    find("gauge").textContent = hidden() ? "" : `Force on a wall [M R/t₀²]: now ${now}, mean ${mean}${told}.`;
     const free = P.freeLength(state.chain), exact = { start: box - free, slope: 1 / law / free, known };
     return { box, forces, found: ChainGas.line(forces), exact };
   }
@@ -60,22 +79,20 @@
   /* One sentence about what was just done, until something else is done. */
   const note = (text) => { find("note").textContent = text; };
 
-  /* Break off the push under way, what is judged and, where the chain `changes`, its theory, and say why.
-     Pushes that a challenge counts stay until it `leaves` off. */
-  function breakOff(why, { changes, leaves } = {}) {
-    const broken = [
-      world.pushed && "the push under way", judging && (leaves || !chosen.calm) && "the judging",
-      changes && ChainTheory.asked() && "the computation of the theory",
-    ].filter(Boolean);
+  /* Break off the push under way and what is judged, and say why. Pushes that a challenge counts stay
+     until it `leaves` off. */
+  function breakOff(why, leaves) {
+    const judged = judging && (leaves || !chosen.calm);
+    const broken = [world.pushed && "the push under way", judged && "the judging"].filter(Boolean);
     if (broken.length) note(`${why}, which broke off ${broken.join(" and ")}.`);
-    if (changes) ChainTheory.abort();
     world.pushed = null;
   }
 
   /* Let the challenge look, and say what it found; only that it is done is read aloud. */
   function judge() {
     judging = false;
-    if (!chosen.watch || world.hand) return; // a rod in the hand does not move by itself
+    if (hidden()) find("said").textContent = "";
+    if (!chosen.watch || world.hand || hidden()) return; // a rod in the hand does not move by itself
     const gas = P.isGas(chosen.chain);
     if (gas !== P.isGas(world.state.chain)) {
       find("said").textContent = `This question is about ${gas ? "a gas in a box" : "rods on springs"}.`;
@@ -95,24 +112,49 @@
 
   const tick = (mark) => { mark.textContent += " ✓"; };
 
-  /* Show the answer once the challenge is done, or the preset's was asked for. */
+  /* Show the answer once the challenge is done, or the preset's was asked for; before that what is
+     measured, and before that nothing. */
   function answer() {
     const known = solved.has(chosen.id);
     find("answer").textContent = known ? chosen.answer : "";
-    find("reveal").hidden = known || chosen.kind !== "preset";
+    find("reveal").hidden = !hidden() && (known || chosen.kind !== "preset");
+    find("reveal").textContent = !hidden() ? "Show the answer" : predicted() ? "Show" : "Skip the prediction";
+    for (const input of find("guesses").querySelectorAll("input")) input.readOnly = !hidden();
   }
 
-  /* Begin what was chosen, with some values changed. */
-  function choose(what, values = {}) {
+  function reveal() {
+    if (hidden()) guess.shown = true;
+    else if (chosen.kind === "preset") solved.add(chosen.id);
+    draw();
+  }
+
+  /* A box for each number that is expected. */
+  function askForNumbers() {
+    find("guesses").replaceChildren(...(chosen.predict?.numbers ?? []).map((words, k) => {
+      const label = document.createElement("label"), input = document.createElement("input");
+      Object.assign(input, { type: "number", min: 0, step: "any", value: guess.values[k] ?? "" });
+      input.addEventListener("input", () => {
+        guess.values[k] = Number.isNaN(input.valueAsNumber) ? null : input.valueAsNumber;
+        answer();
+      });
+      label.append(`${k ? "" : "My prediction: "}${words} `, input);
+      return label;
+    }));
+  }
+
+  /* Begin what was chosen, with some values changed, and what is expected of it. */
+  function choose(what, values = {}, expected = null) {
     const begun = { ...ChainAddress.beginning(what), ...values }, stopped = world.ranAway;
     note("");
-    breakOff("A chain was begun anew", { changes: true, leaves: true });
+    breakOff("A chain was begun anew", true);
     chosen = what;
+    guess = what.predict ? expected ?? { ...ChainPredicting.blank(what), shown: solved.has(what.id) } : null;
+    if (guess && values.prediction) guess.values = values.prediction;
+    askForNumbers();
     for (const each of CHALLENGES) find(`challenge-${each.id}`).setAttribute("aria-pressed", String(each === what));
     find("preset").value = what.kind === "preset" ? what.id : "";
     find("ask").textContent = what.ask;
-    find("said").textContent = find("announced").textContent = "";
-    answer();
+    for (const name of ["said", "announced", "compared"]) find(name).textContent = "";
     for (const [name, list] of Object.entries(pictures)) list.value = begun[name];
     rod = begun.rod;
     world.pushes = [];
@@ -146,8 +188,10 @@
   function slide(name) {
     const control = sliders[name], chain = { ...world.state.chain }, stopped = world.ranAway;
     chain[name] = name === "spring" ? control.value : Number(control.value);
-    chain.box = Math.max(chain.box, P.narrowest(chain));
-    breakOff(`The ${control.labels[0].textContent.split(" [")[0]} changed`, { changes: true });
+    const begins = name === "spring" && P.isGas(chain);
+    chain.box = begins ? ChainAddress.roomy(chain).box : Math.max(chain.box, P.narrowest(chain));
+    breakOff(`The ${control.labels[0].textContent.split(" [")[0]} changed`);
+    if (begins) setSpeed(ChainAddress.roomy(chain).speed);
     if (name === "size" || name === "spring" || stopped || P.isGas(chain)) R.begin(chain);
     else R.change(chain);
     showValues();
@@ -163,7 +207,8 @@
   /* Write all that is chosen into the address, after whatever was done. */
   function write() {
     const { first, second } = pictures, shown = { first: first.value, second: second.value, speed: world.speed };
-    ChainAddress.write(chosen, { ...world.state.chain, rod, ...shown }, [...solved]);
+    const prediction = predicted() && guess.values.join("_");
+    ChainAddress.write(chosen, { ...world.state.chain, rod, ...shown, prediction }, [...solved]);
   }
 
   /* Begin what the address asks for; say why it is refused. */
@@ -172,14 +217,22 @@
     const asked = ChainAddress.read({
       challenge: options(CHALLENGES), preset: options(PRESETS), ...sliders,
       rod: { min: 1, max: sliders.size.max, step: "1" }, ...pictures, speed: find("speed"),
+      prediction: { numbers: true },
     });
     if (asked?.values) {
       const { challenge, preset, ...values } = asked.values;
       const what = [...CHALLENGES, ...PRESETS].find(({ id }) => id === (challenge || preset)) || OWN;
-      const { rod: named, ...chain } = { ...ChainAddress.beginning(what), ...values }, { size, box } = chain;
+      const begun = { ...ChainAddress.beginning(what), ...values }, { box: room, speed } = ChainAddress.roomy(begun);
+      if (P.isGas(begun) && begun.box < P.narrowest(begun)) values.box ??= room;
+      if (P.isGas(begun) && what === OWN) values.speed ??= speed;
+      const { rod: named, ...chain } = { ...begun, ...values }, { size, box } = chain;
+      const numbers = what.predict ? ChainPredicting.blank(what).values.length : 0;
       if (named > size) asked.refused = `rod must be a whole number from 1 to ${size}, got ${named}`;
       else if (box < P.narrowest(chain))
         asked.refused = `${size} rods need a box of at least ${P.narrowest(chain)} R, got ${box}`;
+      else if (values.prediction && values.prediction.length !== numbers)
+        asked.refused = numbers ? `prediction must be ${numbers} numbers here, got ${values.prediction.length}`
+          : "a prediction belongs to a challenge or a question";
       else return choose(what, values);
     }
     otherwise();
@@ -227,22 +280,9 @@
     link.click();
   }
 
-  /* Solve the theory of the chain, or stop. What is said of one chain is not seen with another. */
-  function solve() {
-    const { chain } = world.state;
-    const said = (text) => {
-      told = { chain, said: text };
-      if (chain === world.state.chain) draw();
-    };
-    if (ChainTheory.asked()) ChainTheory.abort();
-    else ChainTheory.ask(chain, root.dataset.theory, said);
-  }
-
   function listen() {
     const clicks = {
-      step, push, save, solve,
-      restart: () => choose(chosen, chosen === OWN ? world.state.chain : {}),
-      reveal: () => (solved.add(chosen.id), answer()),
+      step, push, save, reveal, restart: () => choose(chosen, chosen === OWN ? world.state.chain : {}, guess),
     };
     for (const [name, act] of Object.entries(clicks)) find(name).addEventListener("click", act);
     // Whoever presses the button is told by it, and pushes no other rod.
@@ -257,6 +297,7 @@
       push();
       write();
     });
+    for (const name of Object.keys(pictures)) ChainPredicting.listen(find(name), () => guess, () => (draw(), write()));
     ChainHand.listen(stage, () => breakOff("A rod was held"), touched);
     for (const type of ["click", "input", "change"]) root.addEventListener(type, write); // after all others
     window.addEventListener("hashchange", () => obeyAddress());
@@ -265,7 +306,6 @@
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
     new MutationObserver(again).observe(document.body, { attributeFilter: ["data-theme"] });
   }
-
 
   /* Give a challenge or preset the words of its element. */
   function word(each, element) {
@@ -285,7 +325,6 @@
     for (const each of PRESETS) word(each, find("preset").querySelector(`[value="${each.id}"]`));
     for (const name of NAMES) if (!sliders[name].options) ChainSliders.surround(sliders[name], name, slide);
     pictures.second.append(...pictures.first.cloneNode(true).children);
-    find("solve").hidden = !root.dataset.theory; // only a server can
   }
 
   ChainFrames.show({ stage, plots: drawPlots, button: find("play") });

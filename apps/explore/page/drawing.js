@@ -40,7 +40,7 @@ const ChainDrawing = (() => {
     constructor(canvas) {
       this.canvas = canvas;
       this.strip = document.createElement("canvas");
-      this.rows = []; // the last ones, newest first: [positions, velocities in free widths, contacts]
+      this.rows = []; // the last ones, newest first: [positions, velocities in free widths, contacts or null]
       this.half = 1;
     }
 
@@ -87,10 +87,19 @@ const ChainDrawing = (() => {
         pen.fillStyle = shade(v[i], this.colour);
         pen.fillRect((x[i] + this.half) * scale - length / 2, age, length, 1);
       }
-      if (length < LEAST * this.ratio) return; // bars would hide the rods
+      if (!met) this.drawTrail(x, age, scale);
+      if (!met || length < LEAST * this.ratio) return; // bars would hide the rods
       pen.fillStyle = this.colour.ink;
       const bar = Math.min(length, 8 * this.ratio);
       for (const c of met) pen.fillRect(((x[c] + x[c + 1]) / 2 + this.half) * scale - bar / 2, age, bar, 1);
+    }
+
+    /* The trail of the rod in the middle, where the others are a texture. */
+    drawTrail(x, age, scale) {
+      const pen = this.strip.getContext("2d"), rod = x.length >> 1, before = this.rows[age + 1]?.[0][rod] ?? x[rod];
+      pen.fillStyle = this.colour.ink;
+      const from = (Math.min(before, x[rod]) + this.half) * scale, across = Math.abs(before - x[rod]) * scale;
+      pen.fillRect(from - this.ratio, age, across + 2 * this.ratio, 1);
     }
 
     /* Draw rods, springs and strip. `age`: the time that the strip spans [t_0]. */
@@ -110,7 +119,7 @@ const ChainDrawing = (() => {
         pen.fillRect(x - length / 2, 52 - high, length, high);
         if (length < 3) continue;
         pen.strokeStyle = i === state.held ? colour.exact : colour.ink;
-        pen.lineWidth = i === state.held ? 3 : 1;
+        pen.lineWidth = i === state.held || (i === state.y.length >> 1 && this.rows[0]?.[2] === null) ? 3 : 1;
         pen.strokeRect(x - length / 2, 52 - high, length, high);
       }
       if (state.masses) {

@@ -36,7 +36,8 @@ const ChainMeasuring = (() => {
       for (const each of [this.counts, this.squares, this.middle, this.ends]) each.fill(0);
       this.samples = this.time = 0;
       this.begun = this.record.length - 1; // where the first block does
-      this.ends = []; // of the blocks in the record
+      this.stops = []; // of the blocks in the record
+      this.marks = {}; // of each sum at the end of the last block, and the squares of what blocks added
       this.blocks = []; // of mean [v^2 at the border, v^2 in the centre], of a gas [force, kurtosis]
       this.block = [0, 0, 0]; // sums of both, and the time of the present block
     }
@@ -68,8 +69,32 @@ const ChainMeasuring = (() => {
       block[2] += elapsed;
       if (block[2] < this.blockTime) return;
       this.blocks.push([block[0] / block[2], block[1] / block[2]]);
-      this.ends.push(this.record.length - 1);
+      this.stops.push(this.record.length - 1);
       this.block = [0, 0, 0];
+      this.mark();
+    }
+
+    /* Keep how much the block that has ended added to each sum. */
+    mark() {
+      const { squares, middle, ends } = this;
+      for (const [name, sums] of Object.entries({ squares, middle, ends, covered: covered(this.counts) })) {
+        const { last, added } = this.marks[name] ?? {};
+        const more = sums.map((sum, k) => (added?.[k] ?? 0) + (sum - (last?.[k] ?? 0)) ** 2);
+        this.marks[name] = { last: sums.slice(), added: more, samples: this.samples };
+      }
+    }
+
+    /* Standard errors of averages over the samples, from blocks; none before the second one. */
+    errors(name) {
+      const n = this.blocks.length, { last, added, samples } = this.marks[name] ?? {};
+      if (n < 2) return [];
+      return Array.from(last, (sum, k) => Math.sqrt(Math.max(added[k] - sum ** 2 / n, 0) * (n / (n - 1))) / samples);
+    }
+
+    /* The force on a wall of a gas in the last samples. */
+    momentary() {
+      const [time, sum] = this.record.at(-1), [before, less] = this.record.at(-30) ?? this.record[0];
+      return time > before ? (sum - less) / (time - before) : 0;
     }
 
     get settled() {
@@ -81,21 +106,18 @@ const ChainMeasuring = (() => {
       return Array.from(this.squares, (sum) => Math.sqrt(sum / Math.max(this.samples, 1)));
     }
 
-    /* [[velocity, its probability density], ...] in the middle or at the "ends", where any was seen. */
+    /* [[velocity, its probability density, its error], ...] in the middle or at the "ends", where any
+       was seen. */
     velocities(where) {
-      const total = this[where].reduce((sum, n) => sum + n, 0) * CELL;
-      return Array.from(this[where], (n, k) => [k * CELL - FASTEST, n / total]).filter(([, p]) => p > 0);
+      const total = this[where].reduce((sum, n) => sum + n, 0) * CELL, errors = this.errors(where);
+      const share = this.samples / total;
+      return Array.from(this[where], (n, k) => [k * CELL - FASTEST, n / total, errors[k] * share]).filter(([, p]) => p > 0);
     }
 
     /* [[place, share of time that a rod covers it], ...], at the edges of the bins. */
     coverage() {
-      const width = 2 * P.RADIUS * BINS, found = [];
-      let sum = 0;
-      for (let k = 0; k < this.counts.length + width; k++) {
-        sum += (this.counts[k] || 0) - (this.counts[k - width] || 0);
-        found.push([(k + 1) / BINS - this.half - P.RADIUS, sum / Math.max(this.samples, 1)]);
-      }
-      return found;
+      return Array.from(covered(this.counts), (sum, k) =>
+        [(k + 1) / BINS - this.half - P.RADIUS, sum / Math.max(this.samples, 1)]);
     }
 
     /* Kinetic energy at the border over that in the centre in some blocks, with its standard error. */
@@ -119,7 +141,7 @@ const ChainMeasuring = (() => {
       const { value, scatter } = mean(this.blocks.slice(0, n).map(([force]) => force));
       if (!this.oneMass || n === 0) return { value, error: scatter / n };
       const average = (from, to) => (to[1] - from[1]) / (to[0] - from[0]), { record, begun } = this;
-      const length = this.ends[n - 1] - begun;
+      const length = this.stops[n - 1] - begun;
       const earlier = Array.from({ length: begun + 1 }, (_, k) => average(record[k], record[k + length]));
       return { value, error: mean(earlier).scatter };
     }
@@ -129,6 +151,14 @@ const ChainMeasuring = (() => {
       const { value, scatter } = mean(this.blocks.slice(0, n).map(([, kurtosis]) => kurtosis));
       return { value, error: scatter / Math.sqrt(n) };
     }
+  }
+
+  /* How often a rod covered the edges of the bins, of the `counts` of its centre. */
+  function covered(counts) {
+    const width = 2 * P.RADIUS * BINS, found = new Float64Array(counts.length + width);
+    for (let k = 0, sum = 0; k < found.length; k++)
+      found[k] = sum += (counts[k] || 0) - (counts[k - width] || 0);
+    return found;
   }
 
   /* The running average of points over a rod's length, as the paper draws it. */

@@ -33,6 +33,10 @@ const ChainPlots = (() => {
     return [Math.floor(from / step) * step, Math.ceil((high + room) / step) * step];
   }
 
+  // A prediction on the picture that is drawn: {guess, axes, hidden}, `hidden` before anything is shown.
+  let predicted = null;
+  const joined = (one, other) => (other ? [Math.min(one[0], other[0]), Math.max(one[1], other[1])] : one);
+
   const number = (value) => String(value).replace("-", "−");
   const powerOfTen = (k) => (k >= -2 && k <= 3 ? number(Number((10 ** k).toFixed(2)))
     : `10${String(k).replace(/./g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"["0123456789-".indexOf(digit)])}`);
@@ -40,13 +44,17 @@ const ChainPlots = (() => {
   /* Axes for points (x, y) within two ranges; y may be a power of ten. */
   class Plot {
     constructor(canvas, colour, { x, y, xTitle, yTitle, apart, powers }) {
-      Object.assign(this, fit(canvas), { colour, xRange: x, yRange: y });
+      const { axes = {}, hidden } = predicted ?? {}, range = (own, wanted) => (hidden && wanted) || joined(own, wanted);
+      Object.assign(this, fit(canvas), { colour, hidden, xRange: range(x, axes.x), yRange: range(y, axes.y), seen: {} });
+      this.drawn = axes.x ?? this.xRange; // where a prediction lies
       this.pen.clearRect(0, 0, this.width, this.height);
       this.pen.font = `12px ${colour.sans}`;
-      this.frame(ticks(...x, this.width / 70, apart), ticks(...y, 4, powers && 1), powers ? powerOfTen : number);
+      const xs = ticks(...this.xRange, this.width / 70, apart), ys = ticks(...this.yRange, 4, powers && 1);
+      this.frame(xs, ys, powers ? powerOfTen : number);
       this.words(xTitle, (LEFT + this.width - RIGHT) / 2, this.height - 5, "center");
       this.words(yTitle, 2, 12, "left");
       this.legendEnd = this.width - 2;
+      canvas.plot = this;
     }
 
     across(x) {
@@ -57,6 +65,14 @@ const ChainPlots = (() => {
     up(y) {
       const [from, to] = this.yRange;
       return ABOVE + (this.height - ABOVE - BELOW) * (1 - (y - from) / (to - from));
+    }
+
+    /* The share of the way across a prediction, and the value, of a place on the canvas. */
+    at(x, y) {
+      const [from, to] = this.xRange, [low, high] = this.yRange, [left, right] = this.drawn;
+      const place = from + ((x - LEFT) / (this.width - LEFT - RIGHT)) * (to - from);
+      const value = low + (high - low) * (1 - (y - ABOVE) / (this.height - ABOVE - BELOW));
+      return [(place - left) / (right - left), Math.min(Math.max(value, low), high)];
     }
 
     words(text, x, y, align) {
@@ -89,9 +105,10 @@ const ChainPlots = (() => {
       }
     }
 
-    /* Only what lies within the axes is seen. */
+    /* Only what lies within the axes is seen, and nothing before a prediction. */
     within(draw) {
       const { pen } = this;
+      if (this.hidden) return;
       pen.save();
       pen.beginPath();
       pen.rect(LEFT, ABOVE - 3, this.width - LEFT - RIGHT + 3, this.height - ABOVE - BELOW + 4);
@@ -102,6 +119,7 @@ const ChainPlots = (() => {
 
     /* Name what `sample(x, y)` draws, from the right to the left. */
     name(text, sample) {
+      if (this.hidden) return;
       const width = this.pen.measureText(text).width;
       this.words(text, this.legendEnd, 12, "right");
       sample(this.legendEnd - width - 16, 8);
@@ -109,6 +127,7 @@ const ChainPlots = (() => {
     }
 
     area(points, strength, text) {
+      this.seen[text] = points;
       const { pen, colour } = this, fill = (draw) => {
         pen.fillStyle = colour.grey;
         pen.globalAlpha = 0.55 * strength;
@@ -123,6 +142,7 @@ const ChainPlots = (() => {
     }
 
     line(points, text, dash = []) {
+      this.seen[text] = points;
       const { pen } = this, stroke = () => {
         pen.strokeStyle = dash.length ? this.colour.ink : this.colour.exact;
         pen.lineWidth = 1.8;
@@ -134,8 +154,9 @@ const ChainPlots = (() => {
       if (text) this.name(text, (x, y) => (pen.beginPath(), pen.moveTo(x - 4, y), pen.lineTo(x + 12, y), stroke()));
     }
 
-    /* Squares or rings. */
+    /* Squares or rings, of [x, y] or, with an error bar, of [x, y, low, high]. */
     dots(points, strength, text, rings = false) {
+      this.seen[text] = points;
       const { pen, colour } = this, dot = (x, y) => {
         pen.globalAlpha = strength;
         pen.fillStyle = colour.grey;
@@ -147,14 +168,41 @@ const ChainPlots = (() => {
         else pen.fillRect(x - 2.5, y - 2.5, 5, 5);
         pen.globalAlpha = 1;
       };
+      this.bars(points);
       this.within(() => points.forEach(([x, y]) => dot(this.across(x), this.up(y))));
       this.name(text, (x, y) => dot(x + 6, y));
     }
+
+    bars(points) {
+      const { pen } = this;
+      pen.fillStyle = this.colour.ink;
+      this.within(() => points.forEach(([x, , low, high]) => {
+        if (high > low) pen.fillRect(this.across(x) - 0.6, this.up(high), 1.2, this.up(low) - this.up(high));
+      }));
+    }
+
+    /* The curve that somebody drew, and before it is shown the point that keys move. */
+    prediction({ values, at }) {
+      const { hidden, drawn: [left, right] } = this, place = (k) => left + (k / (values.length - 1)) * (right - left);
+      if (values[0] === null) {
+        if (hidden) this.words("draw here what you expect", this.width / 2, this.height / 2, "center");
+        return;
+      }
+      this.hidden = false;
+      this.line(values.map((y, k) => [place(k), y]), "yours", [2, 3]);
+      this.hidden = hidden;
+      if (hidden) this.pen.fillRect(this.across(place(at)) - 4, this.up(values[at]) - 4, 8, 8);
+    }
   }
 
-  const strength = (measurement) => (measurement.settled ? 1 : 0.45);
+  const strength = ({ settled, blocks }) => (settled && blocks.length > 1 ? 1 : 0.45);
 
-  const measuredIn = ({ settled }) => (settled ? "measured" : "not settled yet");
+  /* [x, y] with an error bar, where the error is known; of logarithms, too. */
+  const barred = (x, y, error, log = (each) => each) =>
+    (error > 0 ? [x, log(y), log(Math.max(y - error, 1e-9)), log(y + error)] : [x, log(y)]);
+
+  const measuredIn = ({ settled, samples }) =>
+    (settled ? "measured" : samples ? "not settled yet" : "not measured yet");
 
   /* Pictures by name, of {half, measurement, history, restitution, unit, counted, inUnits, exact, theory,
      gas}: velocities are divided by the `unit`, those of the distributions counted in `counted` units, the
@@ -170,6 +218,8 @@ const ChainPlots = (() => {
         yTitle: averaged ? "share covered, averaged over 2R" : "share of time covered",
       });
       plot.area(measured, strength(measurement), "measured");
+      const errors = averaged ? [] : measurement.errors("covered"), every = Math.ceil(measured.length / 30);
+      plot.bars(measured.map(([x, y], k) => (k % every ? [x, y] : barred(x, y, errors[k]))));
       if (exact) plot.line(alike(exact), "exact");
       if (averaged && !exact) plot.line(theory.density, "theory");
       if (averaged && theory.other) plot.line(theory.other.density, theory.other.short, [6, 3]);
@@ -180,11 +230,12 @@ const ChainPlots = (() => {
 
     widths(canvas, colour, { measurement, unit, inUnits, theory }) {
       const widths = measurement.widths().map((each) => each / unit), known = theory?.widths;
+      const errors = measurement.errors("squares").map((error, i) => error / (2 * unit ** 2 * widths[i]));
       const plot = new Plot(canvas, colour, {
         x: [0, widths.length + 1], y: around([...widths, ...(known || [])], 0.2), xTitle: "rod i", apart: 1,
         yTitle: `velocity width [${inUnits}]`,
       });
-      plot.dots(widths.map((width, i) => [i + 1, width]), strength(measurement), "measured");
+      plot.dots(widths.map((width, i) => barred(i + 1, width, errors[i])), strength(measurement), "measured");
       if (known) plot.line(known.map((width, i) => [i + 1, width]), theory.short);
       const last = widths.length - 1, said = (all) => [0, last >> 1, last].map((i) => all[i].toFixed(2)).join(", ");
       return `Velocity widths of the first, the middle and the last rod, ${measuredIn(measurement)}: ${said(widths)} ` +
@@ -193,7 +244,8 @@ const ChainPlots = (() => {
 
     velocities(canvas, colour, { measurement, restitution, counted, inUnits, gas }) {
       const log = ([v, p]) => [v, Math.log10(p)], [middle, ends] = ["middle", "ends"].map((where) =>
-        measurement.velocities(where).map(([v, p]) => log([v * counted, p / counted])));
+        measurement.velocities(where).map(([v, p, error]) =>
+          barred(v * counted, p / counted, error / counted, Math.log10)));
       const [slow, fast] = [middle, ends].map((points) => Math.max(0, ...points.map(([v]) => Math.abs(v))));
       const fastest = Math.max(inUnits === "W" ? 4 : 0.1, slow, fast);
       const plot = new Plot(canvas, colour, {
@@ -213,7 +265,7 @@ const ChainPlots = (() => {
 
     /* Of a gas in several boxes, with the line through them and the exact one. */
     pressure(canvas, colour, { gas: { box, forces, found, exact } }) {
-      const points = forces.map(({ chain, value, error }) => [chain.box, 1 / value, error / value ** 2]);
+      const points = forces.map(({ chain, value, error }) => barred(chain.box, 1 / value, error / value ** 2));
       const last = 1.1 * Math.max(box, ...points.map(([x]) => x));
       const at = ({ start, slope }, x) => [x, slope * (x - start)];
       const plot = new Plot(canvas, colour, {
@@ -223,10 +275,20 @@ const ChainPlots = (() => {
       const draw = (line, ...how) => plot.line([at(line, line.start), at(line, last)], ...how);
       if (exact.known) draw(exact, "exact");
       if (found) draw(found, "straight line", [6, 3]);
-      for (const [x, y, error] of points) plot.line([[x, y - error], [x, y + error]], "", [1, 0]);
       plot.dots(points, 1, "measured");
       return `1/force on a wall: measured in ${forces.length} boxes` +
         `${found ? `; the line through them begins at ${found.start.toFixed(1)} R` : ""}.`;
+    },
+
+    /* Of a gas, from its beginning. */
+    collisions(canvas, colour, { history }) {
+      const points = history.map(([t, , met]) => [t, met]), [last, most] = points.at(-1);
+      const plot = new Plot(canvas, colour, {
+        x: [0, Math.max(last, 1)], y: [0, Math.max(1.1 * most, 4)], xTitle: "time t [t₀]",
+        yTitle: "collisions of rods and with the left wall",
+      });
+      plot.line(points, "counted", [1, 0]);
+      return `Collisions of rods and with the left wall: ${most} in ${Math.round(last)} t₀.`;
     },
 
     energy(canvas, colour, { history, inUnits }) {
@@ -244,5 +306,23 @@ const ChainPlots = (() => {
     },
   };
 
-  return { fit, number, ticks, around, pictures };
+  /* Draw a picture, with the prediction on it if there is one, and return what is seen as a sentence. A
+     picture without a prediction of its own is closed until then. */
+  function draw(name, canvas, colour, seen, prediction) {
+    predicted = prediction;
+    if (prediction?.hidden && !prediction.guess) {
+      const { pen, width, height } = fit(canvas);
+      pen.clearRect(0, 0, width, height);
+      pen.font = `12px ${colour.sans}`;
+      pen.fillStyle = colour.ink;
+      pen.textAlign = "center";
+      pen.fillText("shown after your prediction", width / 2, height / 2);
+      return "Shown after your prediction.";
+    }
+    const sentence = pictures[name](canvas, colour, seen);
+    if (prediction) canvas.plot.prediction(prediction.guess);
+    return prediction?.hidden ? "Draw what you expect: the keys left and right choose a point, up and down move it." : sentence;
+  }
+
+  return { fit, number, ticks, draw };
 })();

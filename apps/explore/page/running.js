@@ -68,7 +68,7 @@ const ChainRunning = (() => {
     const energy = laws().energy(world.state);
     world.touched = Math.max(energy, freeEnergy());
     world.growth = energy / freeEnergy();
-    world.history = [[world.state.time, world.growth]];
+    world.history = [[world.state.time, world.growth, 0]];
     stride = 1;
     if (!sameChain) stage.restart(world.state.chain);
   }
@@ -85,7 +85,7 @@ const ChainRunning = (() => {
     state.met.forEach((closed, contact) => closed && met.add(contact));
     world.met = [...met].filter((contact) => !before.has(contact)); // others are still in contact
     before = met;
-    stage.add(state, unit(), world.speed <= SEEN ? world.met : []);
+    stage.add(state, unit(), world.speed <= SEEN ? world.met : null);
     const energy = laws().energy(state);
     world.growth = energy / freeEnergy();
     remember();
@@ -107,7 +107,8 @@ const ChainRunning = (() => {
   function remember() {
     if (++skipped < stride) return;
     skipped = 0;
-    world.history.push([world.state.time, world.growth]);
+    const { time, collisions, hits } = world.state;
+    world.history.push([time, world.growth, collisions + (hits?.[0] ?? 0)]);
     if (world.history.length <= KEPT) return;
     world.history = world.history.filter((_, k) => k % 2 === 0);
     stride *= 2;
@@ -190,11 +191,12 @@ const ChainRunning = (() => {
 
   /* What the chain does, in words. */
   function happening() {
-    const { measurement: { settled, settling, time } } = world;
+    const { measurement: { settled, settling, time, blocks, blockTime } } = world;
     if (world.ranAway) return `The chain has run away: its energy has grown ${RUN_AWAY} times${growth()}.`;
     if (world.pushed) return "A push is under way.";
     if (!settled) return `Settling for another ${Math.ceil(settling)} t₀, drawn pale.`;
-    return `Measured for ${Math.round(time)} t₀.`;
+    const bars = blocks.length < 2 ? `, drawn pale until error bars are known at ${Math.ceil(2 * blockTime)} t₀` : "";
+    return `Measured for ${Math.round(time)} t₀${bars}.`;
   }
 
   function growth() {

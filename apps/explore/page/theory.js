@@ -2,7 +2,8 @@
 "use strict";
 
 const ChainTheory = (() => {
-  let solved = null, asking = null;
+  const STILL = 300; // milliseconds that a chain must not change before its theory is asked for
+  let solved = null, asking = null, wanted = {}; // `wanted`: the chain that is shown, and since when
   const exact = { chain: null, due: 0, density: null };
 
   /* How good a theory says that it is; an error that was not measured is null. */
@@ -18,9 +19,11 @@ const ChainTheory = (() => {
     return `${title}: ${exactly ? "exact" : known.join(", ") || "its errors were not measured for such chains"}.`;
   }
 
+  const isSolved = (chain) => solved !== null && ChainAddress.same(solved.chain, chain);
+
   /* {short, said, widths, density, other} of the chain, or null; widths in free widths. */
   function of(chain) {
-    if (solved && ChainAddress.same(solved.chain, chain)) return solved;
+    if (isSolved(chain)) return solved;
     if (ChainScales.isGas(chain)) // of two rods the energies depend on how they begin
       return chain.size < 3 ? null : { short: "equal energies", said: "", widths: lightest(chain) };
     if (chain.restitution === 1 && chain.amplitude > 0)
@@ -49,43 +52,29 @@ const ChainTheory = (() => {
     return exact.density;
   }
 
-  /* Ask the server for the best theory of a chain, and `show(text)` of it meanwhile and in the end. */
-  async function ask(chain, address, show) {
-    const stop = new AbortController(), begun = performance.now();
-    asking = { chain, stop };
-    const clock = () => show(`Being solved, ${Math.round((performance.now() - begun) / 1000)} s.`);
-    const ticking = setInterval(clock, 1000);
-    clock();
-    let said = "";
+  /* Ask the server for the best theory of a chain once it has not changed for a moment, one at a time. */
+  async function follow(chain, address) {
+    const now = performance.now();
+    if (wanted.chain !== chain) wanted = { chain, since: now };
+    if (!address || asking || now - wanted.since < STILL || ChainScales.isGas(chain) || isSolved(chain)) return;
+    asking = { ...chain };
     try {
-      const query = new URLSearchParams(ChainAddress.SPRUNG.map((name) => [name, chain[name]]));
-      const wanted = { signal: stop.signal, headers: { "X-Requested-With": "chain" } };
-      const answer = await (await fetch(`${address}?${query}`, wanted)).json();
-      said = answer.refused ? `No theory: ${answer.refused}` : take(chain, answer);
-    } catch (error) {
-      said = error.name === "AbortError" ? "" : "The server does not answer.";
+      const query = new URLSearchParams(ChainAddress.SPRUNG.map((name) => [name, asking[name]]));
+      take(asking, await (await fetch(`${address}?${query}`, { headers: { "X-Requested-With": "chain" } })).json());
+    } catch {
+      solved = { chain: asking, said: "The server does not answer." };
     }
-    clearInterval(ticking);
-    if (asking?.stop === stop) asking = null;
-    show(said);
-  }
-
-  /* Stop asking; the server notices and stops too. */
-  function abort() {
-    asking?.stop.abort();
     asking = null;
   }
 
   /* Keep an answer of the server: the best theory and, at e = 1, the force balance beside it. */
-  function take(chain, { best, other }) {
-    const said = [best, other].filter(Boolean).map(stated).join(" ");
-    solved = {
-      chain: { ...chain }, said, widths: best.widths, density: best.density,
+  function take(chain, { refused, best, other }) {
+    solved = refused ? { chain, said: `No theory: ${refused}.` } : {
+      chain, said: [best, other].filter(Boolean).map(stated).join(" "), widths: best.widths, density: best.density,
       short: best.error === 0 ? "exact" : "theory",
       other: other && { short: other.title, density: other.density },
     };
-    return said;
   }
 
-  return { of, exactDensity, ask, abort, asked: () => asking?.chain };
+  return { of, exactDensity, follow, asking: () => asking !== null };
 })();
