@@ -61,10 +61,5 @@ const ChainAddress = (() => {
 
   const same = (one, other) => NAMES.every((name) => one[name] === other[name]);
 
-  /* The setting in the symbols of the paper. */
-  const told = (chain) => (ChainScales.isGas(chain) ? `L = ${chain.size}, X = ${chain.box} R, mass ratio ` +
-    chain.mass_ratio : `L = ${chain.size}, e = ${chain.restitution}, A = ${chain.amplitude}, ` +
-    `γ = ${chain.damping}, g = ${chain.gap}, ${chain.spring} springs`);
-
-  return { USUAL, NAMES, SPRUNG, beginning, roomy, read, write, same, told };
+  return { USUAL, NAMES, SPRUNG, beginning, roomy, read, write, same };
 })();

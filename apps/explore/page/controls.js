@@ -273,16 +273,9 @@
     if (!ChainFrames.running()) draw();
   }
 
-  function save() {
-    const link = document.createElement("a");
-    link.href = stage.save(ChainAddress.told(world.state.chain));
-    link.download = "chain.png";
-    link.click();
-  }
-
   function listen() {
     const clicks = {
-      step, push, save, reveal, restart: () => choose(chosen, chosen === OWN ? world.state.chain : {}, guess),
+      step, push, reveal, restart: () => choose(chosen, chosen === OWN ? world.state.chain : {}, guess),
     };
     for (const [name, act] of Object.entries(clicks)) find(name).addEventListener("click", act);
     // Whoever presses the button is told by it, and pushes no other rod.

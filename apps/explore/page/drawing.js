@@ -148,31 +148,6 @@ const ChainDrawing = (() => {
       }
       pen.fillText("position x [R]", width / 2, height - 3);
     }
-
-    /* The rods and the strip as a picture, with a key and the words below. */
-    save(words) {
-      const { canvas, colour, ratio } = this, copy = document.createElement("canvas"), pen = copy.getContext("2d");
-      copy.width = canvas.width;
-      copy.height = canvas.height + 42 * ratio;
-      pen.fillStyle = colour.faint;
-      pen.fillRect(0, 0, copy.width, copy.height);
-      pen.drawImage(canvas, 0, 0);
-      pen.translate(4 * ratio, canvas.height);
-      pen.scale(ratio, ratio);
-      pen.font = `12px ${colour.sans}`;
-      const key = [
-        [shade(-FAST, colour), 10, "moves left"], [shade(FAST, colour), 10, "moves right"],
-        [colour.ink, 2, "two rods meet"],
-      ];
-      key.forEach(([fill, high, text], k) => {
-        pen.fillStyle = fill;
-        pen.fillRect(110 * k, 12 - high / 2, 10, high);
-        pen.fillStyle = colour.ink;
-        pen.fillText(text, 110 * k + 15, 16);
-      });
-      pen.fillText(words, 0, 34);
-      return copy.toDataURL();
-    }
   }
 
   /* A spring from its anchor, a tick at the top, to the middle of its rod. */
