@@ -30,7 +30,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import spring
-from crazybilliards.model.checks import refuse_units, shown
+from crazybilliards.model.arrays import check_numbers
+from crazybilliards.model.checks import shown
 from crazybilliards.model.parameters import KNOWN, Parameters
 from crazybilliards.model.words import check_arguments, with_hints
 
@@ -105,8 +106,7 @@ class Chain(Parameters):
         """Raise a ValueError unless all parameters but the known ones have their default values.
 
         ``by`` names the method, for the error, and ``also`` what it knows beside the parameters
-        that everybody knows. A new parameter is then refused wherever nobody has thought of it yet,
-        and never ignored.
+        that everybody knows.
         """
         for name, default in self.unknown().items():
             if name not in also:
@@ -122,8 +122,6 @@ class Chain(Parameters):
             for field in fields(self)
             if field.name not in KNOWN and getattr(self, field.name) != field.default
         }
-
-    # -- geometry ---------------------------------------------------------------------------
 
     @property
     def rank(self) -> NDArray[np.float64]:
@@ -168,20 +166,16 @@ class Chain(Parameters):
 
     def reduced(self, x: ArrayLike) -> NDArray[np.float64]:
         """Reduced coordinates y of rod centres ``x``, shape (..., L)."""
-        refuse_units("x", x)
-        return np.asarray(x) - 2 * self.radius * self.rank
+        return check_numbers("x", x) - 2 * self.radius * self.rank
 
     def physical(self, y: ArrayLike) -> NDArray[np.float64]:
         """Rod centres x of reduced coordinates ``y``, shape (..., L)."""
-        refuse_units("y", y)
-        return np.asarray(y) + 2 * self.radius * self.rank
+        return check_numbers("y", y) + 2 * self.radius * self.rank
 
     @property
     def close_packed_density(self) -> float:
         """The largest density of the rods, 1/(2R) [1/R]."""
         return 1 / (2 * self.radius)
-
-    # -- spring -----------------------------------------------------------------------------
 
     @property
     def potential_exponent(self) -> int:
@@ -190,14 +184,12 @@ class Chain(Parameters):
 
     def force(self, displacement: ArrayLike) -> NDArray[np.float64]:
         """Restoring force F(d) = k d or k d |d|, with the sign of d [M R/t_0^2]."""
-        refuse_units("displacement", displacement)
-        d = np.asarray(displacement, dtype=float)
+        d = check_numbers("displacement", displacement)
         return self.stiffness * spring.force(d, self.potential_exponent)
 
     def potential(self, displacement: ArrayLike) -> NDArray[np.float64]:
         """Spring energy U(d) = k |d|^n / n [M R^2/t_0^2]."""
-        refuse_units("displacement", displacement)
-        d = np.asarray(displacement, dtype=float)
+        d = check_numbers("displacement", displacement)
         return self.stiffness * spring.potential(d, self.potential_exponent)
 
     def reach(self, energy: float) -> float:
@@ -210,8 +202,6 @@ class Chain(Parameters):
     def relative_damping(self) -> float:
         """Gamma/sqrt(k m) of linear springs; beyond 2 a free rod does not oscillate."""
         return self.damping / math.sqrt(self.stiffness * self.mass) if self.stiffness else math.inf
-
-    # -- heat -------------------------------------------------------------------------------
 
     @property
     def temperature(self) -> float:
@@ -253,14 +243,13 @@ class Chain(Parameters):
                 "damping=0: the chain never forgets its start, because nothing takes out the "
                 "energy that the noise puts in"
             )
-        if self.restitution > (critical := self._critical_restitution):
+        if self.restitution > (critical := self._critical_restitution()):
             return (
                 f"restitution={self.restitution:g}: above e_c = {critical:.4g} or so, collisions "
                 "give a gas in this box more energy than the damping takes out"
             )
         return ""
 
-    @property
     def _critical_restitution(self) -> float:
         """Largest e with a steady state of a gas in a box, inf of other chains.
 

@@ -56,10 +56,7 @@ def check_real(name: str, value: object, *, positive: bool = False, signed: bool
 
 
 def refuse_units(name: str, value: Any) -> None:
-    """Raise a ValueError if numbers carry a unit of another library, which would be lost.
-
-    Those of this package are in the chain's own units, and its DataArrays say so.
-    """
+    """Raise a ValueError if numbers carry a unit of another library, which would be lost."""
     # astropy calls it unit, pint and unyt units; xarray gives an attribute of this name.
     unit = getattr(value, "units", getattr(value, "unit", None))
     if unit is not None and not (isinstance(unit, str) and _OWN_UNIT.fullmatch(unit)):

@@ -24,12 +24,8 @@ _BYTES_PER_NODE = 200  # some 25 arrays of a theory
 
 # In units of the chain's length: displacements of this size keep seven digits in a position.
 _SMALLEST_REACH = 1e-9
-
-# Of the rods, by which a whole grid may miss some: rounding, or single precision.
-_MISSED = 1e-5
-
-# exp(-40) = 4e-18: nothing that double precision sees lies further out than U(d) = 40 T.
-_TAIL = 40.0
+_MISSED = 1e-5  # share of the rods that a whole grid may miss: rounding, or single precision
+_TAIL = 40.0  # exp(-40) = 4e-18: nothing that double precision sees lies beyond U(d) = 40 T
 
 
 def thermal_reach(chain: Chain) -> float:
@@ -100,12 +96,12 @@ def require_even(x: NDArray[np.float64], who: str) -> float:
 
 def require_all_held(held: ArrayLike, rods: ArrayLike, who: str, missed: float = _MISSED) -> None:
     """Raise a ValueError unless a grid holds all rods at all times, but for a share ``missed``."""
-    held, rods = np.broadcast_arrays(held, rods)
+    held, rods = (each.ravel() for each in np.broadcast_arrays(held, rods))
     worst = np.argmax(np.abs(held - rods))
-    if not abs(held.flat[worst] - rods.flat[worst]) <= missed * rods.flat[worst]:
+    if not abs(held[worst] - rods[worst]) <= missed * rods[worst]:
         raise ValueError(
-            f"the grid of x holds {held.flat[worst]:.6g} of the chain's {rods.flat[worst]:.6g} "
-            f"rods: {who} needs the whole grid of the result; cut what {who} returns"
+            f"the grid of x holds {held[worst]:.6g} of the chain's {rods[worst]:.6g} rods: {who} "
+            f"needs the whole grid of the result; cut what {who} returns"
         )
 
 

@@ -1,17 +1,14 @@
 """How kernels are compiled: cached on disk, without the global interpreter lock, IEEE arithmetic.
 
-numba's cache notices when the file of a kernel changes. It does not notice when a kernel that it
-calls changes in another file, and would run the old one. Cache entries made here therefore also
-carry a fingerprint of all rooms that have kernels.
+numba's cache notices when the file of a kernel changes, but not when a kernel that it calls changes
+in another file. Cache entries made here therefore carry a fingerprint of all rooms that have
+kernels. If the cache cannot be written, as in a container without a home or on a full disk, kernels
+are compiled in every process, with one warning.
 
 **No counting of references.** numba counts the references to every array that a function receives,
 or takes out of a tuple, although the arrays of a kernel belong to the Python code that called it.
-For a short chain this took far longer than the work. numba's ``_nrt=False`` switches the counting
-off for kernels that allocate no memory. Where a later numba does not know this option, kernels
-count again and are slower.
-
-The cache only saves time. If it cannot be written, as in a container without a home or on a full
-disk, kernels are compiled in every process, with one warning.
+For a short chain this takes far longer than the work. numba's ``_nrt=False`` switches the counting
+off for kernels that allocate no memory. A numba that does not know this option counts again.
 """
 
 from __future__ import annotations
@@ -73,8 +70,7 @@ def kernel(
     except RuntimeError:
         _warn("there is no folder for it")
         return dispatcher
-    # numba has no public way to add to the stamp of its cache, or to let it fail. If a later numba
-    # lacks these private names, its cache works unchanged.
+    # These names of numba are private. Without them its cache works unchanged.
     disk = getattr(dispatcher, "_cache", None)
     index: Any = getattr(disk, "_cache_file", None)
     if hasattr(index, "_source_stamp"):
@@ -143,9 +139,8 @@ def inlined(
     For helpers with many arrays, for which the call costs more than the work. numba then inlines
     also the kernels that it calls, if they are compiled because of that call. ``fused``: as
     in :func:`kernel`. ``once``: one kernel calls it, without a ``*``. It becomes a part of that
-    kernel before anything is compiled. Otherwise it is compiled alone first, and all that it calls
-    is optimised once more with it, which takes seconds for what calls all operators. It is not for
-    what a loop calls with tuples of many arrays: they would be copied at every call.
+    kernel before anything is compiled, which saves seconds for what calls all operators. It is not
+    for what a loop calls with tuples of many arrays: they would be copied at every call.
     """
     if function is None:
         return partial(inlined, fused=fused, once=once)
@@ -155,9 +150,6 @@ def inlined(
 
 @inlined
 def copy(source, target):  # type: ignore[no-untyped-def]
-    """Copy a one-dimensional array: numba compiles ``target[:] = source`` for seconds.
-
-    It would compile the message of an error, of arrays that do not fit, with all of its strings.
-    """
+    """Copy a one-dimensional array: numba compiles ``target[:] = source`` for seconds."""
     for i in range(source.size):
         target[i] = source[i]

@@ -1,7 +1,6 @@
 """The parameters of a chain, each with its default, meaning, unit and check.
 
-This module does not import numpy, so that the command line can list the parameters in its
-``--help`` without a delay.
+numpy is not imported, so that ``--help`` of the command line lists the parameters without a delay.
 """
 
 from __future__ import annotations
@@ -23,7 +22,9 @@ KNOWN = frozenset(
 )
 # For the ``knows`` of what has been made sure of with walls and two masses.
 WALLS_AND_MASSES = frozenset({"box", "wall_restitution", "mass_ratio"})
-_MOST_RODS = 10**9  # 8 GB an array
+
+_positive = partial(check_real, positive=True)
+_count = partial(check_integer, least=1, most=10**9)  # rods, 8 GB an array
 
 
 def _parameter(
@@ -37,9 +38,7 @@ def _parameter(
 class Parameters:
     """The parameters of a chain, each checked in turn; :class:`Chain` documents them."""
 
-    size: int = _parameter(
-        100, "Number of rods L", check=partial(check_integer, least=1, most=_MOST_RODS)
-    )
+    size: int = _parameter(100, "Number of rods L", check=_count)
     restitution: float = _parameter(
         1.0, "Restitution e: below 1 dissipative, above 1 anti-dissipative"
     )
@@ -49,12 +48,8 @@ class Parameters:
         1.0, "Stiffness k of the springs", "M/t_0^2, quadratic M/(R t_0^2)"
     )
     gap: float = _parameter(0.0, "Gap g between rods at their anchors", "R")
-    radius: float = _parameter(
-        1.0, "Half a rod's length", "R", check=partial(check_real, positive=True)
-    )
-    mass: float = _parameter(
-        4 * math.pi / 3, "Mass m of a rod", "M", check=partial(check_real, positive=True)
-    )
+    radius: float = _parameter(1.0, "Half a rod's length", "R", check=_positive)
+    mass: float = _parameter(4 * math.pi / 3, "Mass m of a rod", "M", check=_positive)
     spring: Spring = _parameter(  # noqa: RUF009
         "linear",
         "Force of the springs: linear or quadratic",
@@ -63,9 +58,7 @@ class Parameters:
     box: float = _parameter(0.0, "Distance between two walls; 0: there are none", "R")
     wall_restitution: float = _parameter(1.0, "Restitution of the walls")
     mass_ratio: float = _parameter(
-        1.0,
-        "Mass of every second rod over that of the others",
-        check=partial(check_real, positive=True),
+        1.0, "Mass of every second rod over that of the others", check=_positive
     )
 
     def __post_init__(self) -> None:

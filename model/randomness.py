@@ -1,8 +1,7 @@
 """What random numbers begin with: a seed, in the forms that numpy's users know.
 
-Each form means one whole number. A run that is resumed must have the same bits, and its replicas
-have streams of their own, spawned from the number: a Generator's state could be neither written
-into the provenance nor divided reproducibly.
+Each form means one whole number. Unlike the state of a Generator, it can be written into the
+provenance and divided into streams of replicas.
 """
 
 from __future__ import annotations

@@ -1,13 +1,12 @@
 r"""The law of the springs in units of the stiffness k; no other module repeats it.
 
-A spring stretched by d has the potential U, pulls back with the force F = U' and has the local
-stiffness F':
+A spring stretched by d has the potential U and pulls back with the force F = U':
 
-    U(d) = |d|^n / n,      F(d) = d |d|^(n-2),      F'(d) = (n-1) |d|^(n-2).
+    U(d) = |d|^n / n,      F(d) = d |d|^(n-2).
 
-n is the exponent of the potential: 2 for the linear spring, F = d, and 3 for the quadratic one,
-F = d |d|. The functions take floats and arrays. They are plain Python, so that a kernel can
-compile them in with ``inlined`` of :mod:`crazybilliards.model.kernels`.
+n is 2 for the linear spring, F = d, and 3 for the quadratic one, F = d |d|. The functions take
+floats and arrays. They are plain Python, so that a kernel can compile them in with ``inlined`` of
+:mod:`crazybilliards.model.kernels`.
 """
 
 from __future__ import annotations
@@ -23,11 +22,6 @@ Number = TypeVar("Number", float, NDArray[np.float64])
 def force(d: Number, exponent: int) -> Number:
     """Return the restoring force F(d)/k; its sign is that of d."""
     return d if exponent == 2 else d * abs(d)
-
-
-def stiffness(d: Number, exponent: int) -> Number:
-    """Return the derivative of the force, F'(d)/k."""
-    return (exponent - 1) * abs(d) ** (exponent - 2)
 
 
 def potential(d: Number, exponent: int) -> Number:

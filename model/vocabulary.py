@@ -174,26 +174,24 @@ def result(
         name: (name, np.asarray(values, dtype=float))
         for name, values in (coordinates or {}).items()
     }
-    shown = np.arange(chain.size) if particles is None else np.asarray(particles) - 1
+    rods = np.arange(chain.size) if particles is None else np.asarray(particles) - 1
+    ends = max(chain.size - 1, 1)
     if any("contact" in dims for dims, _ in variables.values()):
-        left = shown[shown < chain.size - 1]
+        left = rods[rods < chain.size - 1]
         along["contact"] = ("contact", left + 1)
-        between = 2 * chain.rank[left] + 1
-        along["normalized_contact"] = ("contact", between / max(chain.size - 1, 1))
+        along["normalized_contact"] = ("contact", (2 * chain.rank[left] + 1) / ends)
     if any("particle" in dims for dims, _ in variables.values()):
-        ends = max(chain.size - 1, 1)
-        along["particle"] = ("particle", shown + 1)
-        along["normalized_particle"] = ("particle", 2 * chain.rank[shown] / ends)
+        along["particle"] = ("particle", rods + 1)
+        along["normalized_particle"] = ("particle", 2 * chain.rank[rods] / ends)
         if "mean_displacement" in variables:
             dimensions, mean = variables["mean_displacement"]
-            along["mean_position"] = (dimensions, chain.anchors[shown] + np.asarray(mean))
+            along["mean_position"] = (dimensions, chain.anchors[rods] + np.asarray(mean))
     dataset = xr.Dataset(dict(variables), coords=along)
     meanings = {**(vocabulary or {}), **VOCABULARY}
-    for name in (*dataset.data_vars, *dataset.coords):
-        meaning, unit = meanings[str(name).removesuffix("_error")]
-        if str(name).endswith("_error"):
-            meaning = f"standard error of {meaning}"
-        dataset[name].attrs |= described(meaning, unit)
+    for name in map(str, dataset.variables):
+        meaning, unit = meanings[name.removesuffix("_error")]
+        error = "standard error of " * name.endswith("_error")
+        dataset[name].attrs |= described(error + meaning, unit)
     if "separation" in dataset.coords and (reach := int(dataset.separation[-1])) < chain.size - 1:
         cut = f"cut at {reach} of {chain.size - 1}; Covariances(separations=...) sets where"
         dataset["separation"].attrs["comment"] = cut

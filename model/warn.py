@@ -29,8 +29,8 @@ def warn_user(message: str, category: type[Warning] = UserWarning) -> None:
 
 def warn_if_diverged(result: Any, what: str, over_time: bool = False) -> None:
     """Warn of a result of a chain that diverged, unless what is read of it is ``over_time``."""
-    diverged = np.asarray(result.attrs.get("status", result.get("status"))) == "diverged"
-    if diverged.any() and not over_time:
+    status = np.asarray(result.attrs.get("status", result.get("status")))
+    if (status == "diverged").any() and not over_time:
         end = result.attrs.get("end_time")  # of a single chain
         at = "see the status" if end is None else f"after t = {end:g}"
         text = f"{what}: a chain diverged ({at}), and averages over time include its growth"

@@ -31,11 +31,9 @@ from crazybilliards.particles.timing import choose_step, count_blocks, default_w
 _GROUPS = 32  # of an ensemble: enough for an error bar good to an eighth
 _OUTPUTS = 100  # times of an ensemble, unless ``every`` is given
 
-# Measured peak memory: copies while observers are joined and averaged, and chunks of snapshots.
+# Measured peak memory: copies of sums while they are joined and averaged, and bytes of the rest.
 _COPIES = 7
-_BYTES_PER_ROD = 200
-_BYTES_PER_REPLICA = 10_000
-_CHUNKS = 4e7
+_ROD, _REPLICA, _CHUNKS = 200.0, 10_000, 4e7
 
 Average = Literal["time", "ensemble"]
 
@@ -48,13 +46,6 @@ class Run:
     each. In an ensemble every block is one snapshot, at one output time, the first after the
     warm-up. The other fields are the arguments of ``simulate``. Where these are None, or no whole
     number of steps, the run chooses or rounds them.
-
-    Raises
-    ------
-    ValueError
-        For a wrong argument, or if the run would not fit into memory: it takes 200 bytes a rod
-        and 10 kB a replica, 40 MB for the snapshots under way, and seven times what the
-        observers keep, while they are joined and averaged.
     """
 
     chain: Chain
@@ -87,15 +78,15 @@ class Run:
         self.merging = check_real("merging", merging)
         self.seed = check_integer("seed", self.seed, least=0)
         self.replicas = check_integer("replicas", self.replicas, least=1, most=MOST_REPLICAS)
-        states = self.replicas * (_BYTES_PER_ROD * float(self.chain.size) + _BYTES_PER_REPLICA)
-        require_memory(f"replicas={self.replicas} of {self.chain.size} rods", states + _CHUNKS)
+        rest = self.replicas * (_ROD * self.chain.size + _REPLICA) + _CHUNKS
+        require_memory(f"replicas={self.replicas} of {self.chain.size} rods", rest)
         _ = self.chosen, self.starts
         self._count_steps()
         require_resolved(self.chain, float(self.chain.reduced_anchors[-1]))
         sums = self.groups * sum(observer.memory(self) for observer in self.observers)
         names = ", ".join(observer.name for observer in self.observers)
         few = "ask for less, such as 'widths' alone, or fewer particles, replicas or times"
-        require_memory(f"observe ({few}): {names}", states + _CHUNKS + _COPIES * sums)
+        require_memory(f"observe ({few}): {names}", rest + _COPIES * sums)
 
     def _require_known(self) -> None:
         """Raise a ValueError if anything that reads the chain does not know a parameter of it.
@@ -141,10 +132,10 @@ class Run:
         else:
             counts = count_blocks(self.chain, duration, self.every, self.replicas)
             self.snapshots, self.blocks, self.block = counts
-        shared = all(observer.shares_time for observer in self.observers)
         at_rest = self.start is None or self.start.attrs.get("source") == "start"
-        timed = self.chain, duration, warmup, self.replicas, at_rest
-        self.too_short = "" if self.ensemble or shared else too_short(*timed)
+        timed = self.ensemble or all(observer.shares_time for observer in self.observers)
+        averaged = self.chain, duration, warmup, self.replicas, at_rest
+        self.too_short = "" if timed else too_short(*averaged)
         self.warmup = self.warmup_steps * self.time_step
         self.duration = (self.snapshots - self.ensemble) * self.stride * self.time_step
 
@@ -172,14 +163,13 @@ class Run:
         return self.warmup_steps + (snapshot + (not self.ensemble)) * self.stride
 
     @property
-    def times(self) -> NDArray[np.float64]:
+    def times(self) -> Array:
         """Time of every snapshot of a replica, shape (snapshots,)."""
         return self.time(np.arange(float(self.snapshots)))
 
-    def time(self, snapshot: NDArray[np.float64]) -> NDArray[np.float64]:
+    def time(self, snapshot: Any) -> Any:
         """Time of snapshots by their numbers from 0; a half number is the middle of two."""
-        count = snapshot + (not self.ensemble)
-        return np.asarray(self.warmup + count * self.every)
+        return self.warmup + (snapshot + (not self.ensemble)) * self.every
 
     @cached_property
     def chosen(self) -> NDArray[np.int64]:

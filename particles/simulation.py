@@ -62,8 +62,8 @@ def simulate(
         The chain, with any restitution.
     duration
         Time measured in each replica [t_0]; rounded up to whole snapshots. Good values are hundreds
-        of relaxation times (:func:`relaxation_time`, 8.4 for the default chain).
-        In less than some twenty of them, error bars would be too small, which a warning says.
+        of relaxation times (:func:`relaxation_time`, 8.4 for the default chain). In less than some
+        twenty of them error bars would be too small, which a warning says.
     warmup
         Time before measuring [t_0]; None: 12 relaxation times, or 0 with a ``start`` and for an
         ensemble.
@@ -72,7 +72,7 @@ def simulate(
         For e != 1 it is also short enough to resolve the noise between collisions; see ``scales``.
         Elastic rods on linear springs without a gap, without springs in a box, and a single rod,
         are flown exactly, unless single collisions or walls are observed. Any step is right then;
-        None: the time between snapshots. Without springs, damping and noise any step is right, too;
+        None: the time between snapshots. Any is right without springs, damping and noise, too;
         None: the time in which rods cross the mean room between them.
     method
         ``"event-driven"``: every collision in its order in time. ``"contact-dynamics"``: all
@@ -87,24 +87,21 @@ def simulate(
     seed
         Integer >= 0, a ``SeedSequence`` or a ``Generator`` of numpy, from which a number is drawn;
         the number stands in the provenance. The same one gives the same result to the last bit for
-        all ``threads``. A ``start`` belongs to the seed: a run that continues another one has new
-        random numbers.
+        all ``threads``. A run that continues another one has new random numbers: its ``start``
+        belongs to the seed.
     observe
         Any of ``"widths"`` (velocity_width, mean_velocity, mean_displacement, displacement_width
         and autocorrelation_time, which is infinite, thus not known, in a run of a single block),
-        ``"density"``, ``"velocities"`` (velocity_density,
-        velocity_skewness, velocity_kurtosis), ``"energy"`` (kinetic_energy, spring_energy and
-        total_energy in time),
-        ``"covariances"`` (velocity_covariance, gap_covariance, mean_gap, neighbour_covariance,
-        relative_temperature), ``"modes"`` (mode_velocity_variance),
-        ``"time-correlations"`` (velocity_autocorrelation, displacement_autocorrelation,
-        mean_squared_displacement, velocity_spectrum, each also of waves and of the centre),
-        ``"collisions"`` (collision_rate), ``"impacts"`` (contact_force, contact_loss,
-        contact_temperature, rebound_temperature, impact_speed_density), in a box ``"walls"``
-        (wall_force, wall_collision_rate), ``"avalanches"`` (avalanche_count),
-        ``"triggered-collisions"`` (triggered_count) and ``"snapshots"``
-        (position and velocity as they are). Observers can also be given as objects,
-        ``cb.observers.Velocities(bins=801)`` or your own.
+        ``"density"``, ``"velocities"`` (velocity_density, velocity_skewness, velocity_kurtosis),
+        ``"energy"`` (kinetic_energy, spring_energy and total_energy in time), ``"covariances"``
+        (velocity_covariance, gap_covariance, mean_gap, neighbour_covariance, relative_temperature),
+        ``"modes"`` (mode_velocity_variance), ``"time-correlations"`` (velocity_autocorrelation,
+        displacement_autocorrelation, mean_squared_displacement, velocity_spectrum, each also of
+        waves and of the centre), ``"collisions"`` (collision_rate), ``"impacts"`` (contact_force,
+        contact_loss, contact_temperature, rebound_temperature, impact_speed_density), in a box
+        ``"walls"`` (wall_force, wall_collision_rate), ``"avalanches"`` (avalanche_count),
+        ``"triggered-collisions"`` (triggered_count) and ``"snapshots"`` (position and velocity as
+        they are). Objects are taken, too: ``cb.observers.Velocities(bins=801)`` or your own.
     start
         A result with ``position`` and ``velocity`` over (replica, particle), such as
         ``equilibrium_states(chain, replicas)`` or ``given_start(chain, position)``; None: every
@@ -121,13 +118,14 @@ def simulate(
     every
         Time between snapshots [t_0]; None: 10 steps, less where ``"time-correlations"`` needs it,
         for an ensemble a hundredth of the duration (with exact flight as far apart as 10 steps of a
-        chain with a gap would be).
-        The time step is shortened to a whole fraction of it. At most a million steps may be
-        shorter than a thousandth of what they would be without it.
+        chain with a gap would be). The time step is shortened to a whole fraction of it. At most a
+        million steps may be shorter than a thousandth of what they would be without it.
     checkpoint
         File for the state of the run, written every ``checkpoint_interval`` seconds and at
         Ctrl-C, SIGTERM or SIGHUP. The same call again continues from there and gives the same
         bits. A checkpoint of another call, or one that another process is using, is refused.
+        SIGTERM and SIGHUP then end the program, unless it ignores or handles them; with the handler
+        ``signal.default_int_handler`` they act like Ctrl-C.
     progress
         Show a progress bar with the time left, on a terminal or in a notebook, elsewhere a line
         every half minute. A text stands in front of it, to tell runs apart.
@@ -143,10 +141,6 @@ def simulate(
         the smallest velocity width above 0 due to the time step: 0 if the flight was exact, NaN
         where it is not known, as for a collision law of your own. ``attrs["relaxation_time"]`` is
         that of the chain.
-
-        SIGTERM and SIGHUP end the program, once the checkpoint is written, unless the program
-        ignores them or handles them itself. With the handler ``signal.default_int_handler`` they
-        act like Ctrl-C.
 
     Raises
     ------
@@ -203,30 +197,27 @@ def simulate(
 
 def _tell_of_divergence(run: Run, measured: xr.Dataset) -> None:
     """Warn that the chain diverged, when and why; raise if nothing was measured before."""
-    text = f"the chain diverged after t = {measured.attrs['end_time']:g}"
-    if not measured.data_vars:
-        text += f" and before the first snapshot at t = {run.times[0]:g}, so nothing was measured"
-    text += f": the time_step {run.time_step:.3g} is too long for its springs; give a shorter one"
+    why = f"the time_step {run.time_step:.3g} is too long for its springs; give a shorter one"
     if max(run.chain.restitution, run.chain.wall_restitution) > 1:
-        text = text.partition(":")[0] + (
-            ": at restitution > 1 collisions bring in more energy than the damping takes out. Take "
+        why = (
+            "at restitution > 1 collisions bring in more energy than the damping takes out. Take "
             "fewer rods (critical_size(chain) estimates how many are too many), more damping, or "
             "the start equilibrium_states(chain.replace(restitution=1), replicas)"
         )
-    if not measured.data_vars:
-        error = DivergedError(f"{text}. To see it grow, give warmup=0 and a shorter every")
-        error.result = measured
-        raise error
-    warn_user(f"{text}. Averages over time include its growth", DivergedWarning)
+    text = f"the chain diverged after t = {measured.attrs['end_time']:g}"
+    if measured.data_vars:
+        warn_user(f"{text}: {why}. Averages over time include its growth", DivergedWarning)
+        return
+    text += f" and before the first snapshot at t = {run.time(0):g}, so nothing was measured"
+    error = DivergedError(f"{text}: {why}. To see it grow, give warmup=0 and a shorter every")
+    error.result = measured
+    raise error
 
 
 def make_run(chain: Chain, *, observe: Any, **arguments: Any) -> Run:
     """Check all arguments of :func:`simulate` that determine its numbers, without any work.
 
-    Raises
-    ------
-    ValueError
-        For a wrong argument, or if the run would not fit into memory.
+    A wrong one is a ValueError, and so is a run that would not fit into memory.
     """
     run = Run(chain=chain, observers=find_observers(observe), **arguments)
     check_observers(run)

@@ -61,8 +61,8 @@ def given_start(
     shape, dims = (replicas, chain.size), ("replica", "particle")
     states, given = {}, dict[str, Any](position=position, velocity=velocity)
     for name, values in given.items():
-        if {"replica", "particle"} == {*getattr(values, "dims", ())}:
-            values = values.transpose("replica", "particle")
+        if {*dims} == {*getattr(values, "dims", ())}:
+            values = values.transpose(*dims)
         numbers = check_numbers(name, values)
         try:
             states[name] = (dims, np.broadcast_to(numbers, shape).copy())
@@ -72,7 +72,7 @@ def given_start(
                 f"{numbers.shape}"
             ) from None
     start = result(chain, states, source="start", method={"start": "given"})
-    kind = getattr(position, "dtype", np.asarray(position).dtype)
+    kind = np.asarray(position).dtype
     if kind.kind == "f" and kind.itemsize < start.position.dtype.itemsize:
         rounded = start.assign(position=start.position.astype(kind))
         y = [y for y, _ in replica_starts(chain, rounded, replicas)]

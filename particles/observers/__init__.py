@@ -65,10 +65,8 @@ def find_observers(observe: str | Observer | Collection[str | Observer]) -> tupl
     if not is_list(names) or len(names) == 0:
         raise ValueError(f"observe takes a list of names or observers, got {shown(observe)}")
     return tuple(
-        name
-        if isinstance(name, Observer)
-        else OBSERVERS[check_choice("observe", name, OBSERVERS)]()
-        for name in dict.fromkeys(names)
+        one if isinstance(one, Observer) else OBSERVERS[check_choice("observe", one, OBSERVERS)]()
+        for one in dict.fromkeys(names)
     )
 
 

@@ -8,8 +8,6 @@ from crazybilliards.model.checks import check_integer
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
 
-_MOST = 100_000
-
 
 class Covariances(Averaged):
     """Covariances of velocities and of gaps, over rods up to ``separations`` places apart.
@@ -21,8 +19,7 @@ class Covariances(Averaged):
     ``steady_state`` predicts: ``neighbour_covariance`` <v_i v_{i+1}> and
     ``relative_temperature`` <(v_i - v_{i+1})^2>/2.
 
-    The sums take 8 (2 separations + 3) L bytes per block. With as many separations as there are
-    rods they hold the whole matrices.
+    The sums take 8 (2 separations + 3) L bytes per block.
 
     Parameters
     ----------
@@ -32,18 +29,15 @@ class Covariances(Averaged):
 
     name = "covariances"
     gives = (
-        "velocity_covariance",
-        "gap_covariance",
-        "mean_gap",
-        "neighbour_covariance",
-        "relative_temperature",
+        *("velocity_covariance", "gap_covariance"),
+        *("mean_gap", "neighbour_covariance", "relative_temperature"),
     )
     along = ("separation",)
     least_rods = 2
     reads_chain = False
 
     def __init__(self, separations: int = 10) -> None:
-        self.separations = check_integer("separations", separations, least=1, most=_MOST)
+        self.separations = check_integer("separations", separations, least=1, most=100_000)
 
     def shape(self, run: Run) -> tuple[int, ...]:
         # The products of velocities and those of gaps by separation, and the gaps.
@@ -63,37 +57,37 @@ class Covariances(Averaged):
         sums = self.sums[snapshots.block]
         for row, values in ((0, snapshots.v), (self.furthest + 1, gaps)):
             size = values.shape[1]
-            for r in range(min(self.furthest, size - 1) + 1):
-                sums[row + r, : size - r] += np.einsum(
-                    "sp,sp->p", values[:, : size - r], values[:, r:]
-                )
+            for r in range(min(self.furthest + 1, size)):
+                left, right = values[:, : size - r], values[:, r:]
+                sums[row + r, : size - r] += np.einsum("sp,sp->p", left, right)
         sums[-1, :-1] += gaps.sum(axis=0)
 
     def report(self, counts: Integers) -> Variables:
         last = self.furthest + 1
-        at_anchors = np.diff(self.anchors)
-        of_velocities = {
-            "velocity_covariance": lambda average: _within_chain(average[..., :last, :])
-        }
+
+        def of_velocities(average: Array) -> Array:
+            return _within_chain(average[..., :last, :])
 
         def of_gaps(average: Array) -> Array:
-            products, mean = average[..., last:-1, :-1], average[..., -1, :-1]
+            products, mean = average[..., last:-1, :-1].copy(), average[..., -1, :-1]
             size = mean.shape[-1]
-            squared = np.zeros_like(products)
-            for r in range(min(self.furthest, size - 1) + 1):
-                squared[..., r, : size - r] = mean[..., : size - r] * mean[..., r:]
-            return _within_chain(products - squared)
+            for r in range(min(last, size)):
+                products[..., r, : size - r] -= mean[..., : size - r] * mean[..., r:]
+            return _within_chain(products)
+
+        def temperature(average: Array) -> Array:
+            squares, neighbours = average[..., 0, :], average[..., 1, :-1]
+            return np.asarray((squares[..., 1:] + squares[..., :-1]) / 2 - neighbours)
 
         of_contacts = {
-            "mean_gap": lambda average: average[..., -1, :-1] + at_anchors,
+            "mean_gap": lambda average: average[..., -1, :-1] + np.diff(self.anchors),
             "neighbour_covariance": lambda average: average[..., 1, :-1],
-            "relative_temperature": lambda average: (
-                (average[..., 0, 1:] + average[..., 0, :-1]) / 2 - average[..., 1, :-1]
-            ),
+            "relative_temperature": temperature,
         }
+        along = "separation"
         return {
-            **self.averages(of_velocities, counts, "particle", "separation"),
-            **self.averages({"gap_covariance": of_gaps}, counts, "contact", "separation"),
+            **self.averages({"velocity_covariance": of_velocities}, counts, "particle", along),
+            **self.averages({"gap_covariance": of_gaps}, counts, "contact", along),
             **self.averages(of_contacts, counts, "contact"),
         }
 

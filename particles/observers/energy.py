@@ -42,20 +42,18 @@ class Energy(Observer):
     knows = WALLS_AND_MASSES
 
     def prepare(self, run: Run, copies: int) -> None:
-        self.run = run
-        self.every, self.together = self._keeps_every(run), 1
-        self.chain = run.chain
-        times = run.snapshots if self.every else _MOST_TIMES
+        self.run, self.together = run, 1
+        times = run.snapshots if _keeps_every(run) else _MOST_TIMES
         self.sums = np.zeros((1, times, 2))  # of the rods and of the springs
         self.counts = np.zeros((1, times), dtype=np.int64)
 
     def memory(self, run: Run) -> float:
-        return 24.0 * (run.snapshots if self._keeps_every(run) else _MOST_TIMES)
+        return 24.0 * (run.snapshots if _keeps_every(run) else _MOST_TIMES)
 
     def observe(self, snapshots: Snapshots) -> None:
-        relative = self.chain.rod_masses / self.chain.mass
-        kinetic = self.chain.mass / 2 * np.einsum("sp,sp->s", relative * snapshots.v, snapshots.v)
-        springs = self.chain.potential(snapshots.y - self.chain.reduced_anchors).sum(axis=1)
+        chain, v = self.run.chain, snapshots.v
+        kinetic = chain.mass / 2 * np.einsum("sp,sp->s", chain.rod_masses / chain.mass * v, v)
+        springs = chain.potential(snapshots.y - chain.reduced_anchors).sum(axis=1)
         while snapshots.first + kinetic.size > self.sums.shape[1] * self.together:
             merge_pairs(self.sums[0])
             merge_pairs(self.counts[0])
@@ -95,12 +93,11 @@ class Energy(Observer):
     def _reached(self) -> NDArray[np.bool_]:
         """Return which times are reported."""
         counted = self.counts > 0
-        return np.asarray(counted.any(axis=0) if self.every else counted.all(axis=0))
+        return np.asarray(counted.any(axis=0) if _keeps_every(self.run) else counted.all(axis=0))
 
-    @staticmethod
-    def _keeps_every(run: Run) -> bool:
-        shared = sum(observer.shares_time for observer in run.observers) > 1
-        return run.ensemble or shared
+
+def _keeps_every(run: Run) -> bool:
+    return run.ensemble or sum(observer.shares_time for observer in run.observers) > 1
 
 
 def _with_total(energies: Array) -> Array:

@@ -33,7 +33,7 @@ class Raw(Observer):
         self.run = run
         self.chosen = run.chosen
         self.offsets = run.chain.physical(np.zeros(run.chain.size))[run.chosen]
-        self.y, self.v = np.full((2, copies, run.times.size, run.chosen.size), np.nan)
+        self.y, self.v = np.full((2, copies, run.snapshots, run.chosen.size), np.nan)
 
     def memory(self, run: Run) -> float:
         return 16.0 * run.chosen.size * run.snapshots * run.copies

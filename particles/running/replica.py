@@ -17,9 +17,8 @@ from crazybilliards.particles.observers.base import Snapshots, merge_pairs
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.stepping import advance, record
 
-# Number of particle steps between two checks for Ctrl-C (about 20 ms), and the most positions in
-# the snapshots between them, which then stay in a processor's cache.
-_CHUNK, _ROOM = 2**20, 2**17
+_CHUNK = 2**20  # particle steps between two checks for Ctrl-C, about 20 ms
+_ROOM = 2**17  # positions in the snapshots between them, which stay in a processor's cache
 _LINE = 8  # numbers in a line of the cache, 64 bytes
 
 NEVER = 2**62
@@ -61,24 +60,21 @@ class Replica:
         self.steps = self.snapshots = 0  # that it has taken
         self.over = False  # it diverged
 
-    def state(self) -> dict[str, ArrayLike]:
-        """Return everything that changes during the run."""
-        state: dict[str, ArrayLike] = {name: getattr(self, name) for name in self.changing}
-        state |= {f"noise {name}": getattr(self.noise, name) for name in STATE}
+    def _kept(self) -> Iterator[tuple[str, Any, str]]:
+        """Yield everything that changes during the run: a name, its owner and the attribute."""
+        yield from ((name, self, name) for name in self.changing)
+        yield from ((f"noise {name}", self.noise, name) for name in STATE)
         for number, observer in enumerate(self.observers):
-            for name, value in observer.state().items():
-                state[f"observer {number} {name}"] = value
-        return state
+            yield from ((f"observer {number} {name}", observer, name) for name in observer.state())
+
+    def state(self) -> dict[str, ArrayLike]:
+        """Return what a checkpoint keeps."""
+        return {key: getattr(owner, name) for key, owner, name in self._kept()}
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Restore the state that :meth:`state` returned."""
-        for name in self.changing:
-            restore(self, name, state[name])
-        for name in STATE:
-            getattr(self.noise, name)[...] = state[f"noise {name}"]
-        for number, observer in enumerate(self.observers):
-            for name in observer.state():
-                restore(observer, name, state[f"observer {number} {name}"])
+        for key, owner, name in self._kept():
+            restore(owner, name, state[key])
 
     @property
     def total(self) -> float:
@@ -103,29 +99,31 @@ class Replica:
 
     def _run(self, stop: Event) -> Iterator[int]:
         """Warm up and measure, copy by copy; yield the number of steps after every chunk."""
+        chunk = max(_CHUNK // self.y.size, 1)
         while True:
-            yield from self._warm_up(stop)
-            yield from self._measure(stop)
+            yield from self._warm_up(stop, chunk)
+            yield from self._measure(stop, chunk)
             if stop.is_set() or self.copy + 1 == self.members.size:
                 return
             self.copy += 1
             self._start()
 
-    def _warm_up(self, stop: Event) -> Iterator[int]:
+    def _warm_up(self, stop: Event, chunk: int) -> Iterator[int]:
         scratch = make_scratch(self.y.size, self.dynamics.inverse, self.patience)
         uncounted = make_tally(self.y.size, contacts=False)
         while self.steps < self.run.warmup_steps and not (self.over or stop.is_set()):
-            steps = min(self._chunk(), self.run.warmup_steps - self.steps)
+            steps = min(chunk, self.run.warmup_steps - self.steps)
             if not self._advance(scratch, uncounted, steps):
                 self._diverge(0)
                 return
             self.steps += steps
             yield steps
 
-    def _measure(self, stop: Event) -> Iterator[int]:
-        run, chunk = self.run, self._chunk()
+    def _measure(self, stop: Event, chunk: int) -> Iterator[int]:
+        run, tally = self.run, make_tally(self.y.size, contacts=self.run.recorded["counted"])
+        for observer in self.observers:
+            tally = observer.tally(tally)
         scratch = make_scratch(self.y.size, self.dynamics.inverse, self.patience)
-        tally = self._tally()
         rows = max(min(chunk // run.stride, _ROOM // self.y.size), 1)
         y_buffer, v_buffer = np.empty((2, rows, self.y.size))
         while self.snapshots < run.snapshots and not (self.over or stop.is_set()):
@@ -152,10 +150,6 @@ class Replica:
             if good < n:
                 self._diverge(block)
             yield steps
-
-    def _chunk(self) -> int:
-        """Return the steps between two checks for Ctrl-C."""
-        return max(_CHUNK // self.y.size, 1)
 
     def _advance(self, scratch: Any, tally: Tally, steps: int) -> bool:
         """Take steps without snapshots; return False if the chain diverged."""
@@ -184,13 +178,6 @@ class Replica:
         self.broken = self.patience[0] < NEVER
         if not self.broken:
             self.over, self.reached = True, min(self.reached, block)
-
-    def _tally(self) -> Tally:
-        """Return the record of collisions: counts, and the arrays that observers add."""
-        tally = make_tally(self.y.size, contacts=self.run.recorded["counted"])
-        for observer in self.observers:
-            tally = observer.tally(tally)
-        return tally
 
 
 def restore(owner: Any, name: str, value: NDArray[Any]) -> None:
