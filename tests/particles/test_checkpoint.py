@@ -37,7 +37,7 @@ INTERRUPTED = {  # the run, and what was called how often when Ctrl-C comes
     ),
     "between snapshots far apart": (
         Chain(size=50, spring="quadratic"),
-        {"duration": 1e4, "every": 5e3, "average": "ensemble", "observe": ("widths", "energy")},
+        {"duration": 4e4, "every": 2e4, "average": "ensemble", "observe": ("widths", "energy")},
         (Replica, "_advance", 3),
     ),
 }
