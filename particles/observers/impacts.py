@@ -16,10 +16,8 @@ from crazybilliards.particles.laws.impacts import (
     ENERGY_BEFORE,
     MOMENTUM_AFTER,
     MOMENTUM_BEFORE,
-    ROWS,
     Speeds,
     make_impacts,
-    make_speeds,
 )
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.observers.velocities import FINEST, LAST, MOST_BINS
@@ -36,10 +34,10 @@ class Impacts(Averaged):
 
         contact_temperature = (pi/16) (<w^2>/<w>)^2,
 
-    and ``rebound_temperature`` is the same of the speeds at which they separate. Gaussian relative
-    velocities with the relative temperature Theta give w the density w exp(-w^2/4 Theta).
-    contact_temperature is Theta then, and rebound_temperature e^2 Theta. At e = 1 Theta is the
-    temperature. Below it
+    and ``rebound_temperature`` is the same of the speeds at which they separate, 0 where all rods
+    that met merged. Gaussian relative velocities with the relative temperature Theta give w the
+    density w exp(-w^2/4 Theta). contact_temperature is Theta then, and rebound_temperature e^2
+    Theta. At e = 1 Theta is the temperature. Below it
 
         contact_loss = (2/sqrt(pi)) (1 - e) contact_force sqrt(contact_temperature),
 
@@ -47,19 +45,15 @@ class Impacts(Averaged):
 
     The means of w and w^2 alone depend on the time step, because rods that noise holds together
     collide ever more often, at ever smaller speeds. Their ratio has a limit. Clusters count as
-    ``laws/impacts.py`` says, and rods that merge separate with speed 0. Below the restitution 0.163
-    the loss contains the energy of the stronger kicks that open closed contacts
-    (``laws/closed_contacts.py``). It vanishes with the time step: at e = 0 and 20 rods it is 11 %
-    of the loss at the default step, 5 and 2 % at a fourth and a sixteenth of it.
+    ``laws/impacts.py`` says. Below the restitution 0.163 the loss contains the energy of the
+    stronger kicks that open closed contacts (``laws/closed_contacts.py``): at e = 0 and 20 rods
+    11 % of the loss at the default step, 5 and 2 % at a fourth and a sixteenth of it.
 
-    Without any collisions the temperatures of a contact are NaN; the rebound temperature is 0
-    where all rods that met merged.
-
-    ``impact_speed_density`` is the probability density of w at each contact, NaN without any
-    collisions. At e = 1 it is w exp(-w^2/4 W^2)/2 W^2. Below it depends on the time step as the
-    means do. The bins are those of :class:`Velocities` for v > 0, in units of the start's speed if
-    there is no W. The few impacts above 1000 W are left out. Those of steps in which a chain
-    diverges are included. A bin and contact take 8 bytes.
+    ``impact_speed_density`` is the probability density of w at each contact. At e = 1 it is
+    w exp(-w^2/4 W^2)/2 W^2. Below it depends on the time step as the means do. The bins are those
+    of :class:`Velocities` for v > 0, in units of the start's speed if there is no W. The few
+    impacts above 1000 W are left out. Those of steps in which a chain diverges are included.
+    A bin and contact take 8 bytes. Without any collisions densities and temperatures are NaN.
 
     Parameters
     ----------
@@ -82,7 +76,7 @@ class Impacts(Averaged):
         self.bins = check_integer("bins", bins, least=1, most=MOST_BINS)
 
     def shape(self, run: Run) -> tuple[int, ...]:
-        return ROWS, run.chain.size - 1
+        return 4, run.chain.size - 1
 
     def memory(self, run: Run) -> float:
         own = math.prod(self.shape(run)) + self.bins * (run.chain.size - 1)
@@ -90,14 +84,13 @@ class Impacts(Averaged):
 
     def prepare(self, run: Run, copies: int) -> None:
         super().prepare(run, copies)
-        self.mass = run.chain.mass
         self.current = make_impacts(run.chain.size)
         scale = run.chain.free_velocity_width
         if not 0 < scale < np.inf:
             step = run.time_step
             scale = max(typical_speed(run.chain, step, y, v) for y, v in run.starts) or 1.0
-        edges = FINEST * scale * np.sinh(np.linspace(0, LAST, self.bins + 1))
-        self.edges, self.numbers = make_speeds(run.chain.size - 1, edges)
+        self.edges = FINEST * scale * np.sinh(np.linspace(0, LAST, self.bins + 1))
+        self.numbers = np.zeros((run.chain.size - 1, self.bins), dtype=np.int64)
 
     def tally(self, tally: Tally) -> Tally:
         return tally._replace(impacts=self.current, speeds=Speeds(self.edges, self.numbers))
@@ -111,12 +104,11 @@ class Impacts(Averaged):
         self.numbers = self.numbers + sum(other.numbers for other in others)
 
     def report(self, counts: Integers) -> Variables:
-        per_time = self.mass / self.run.every
+        per_time = self.run.chain.mass / self.run.every
 
-        def rebound(average: Array) -> Array:
-            merged = (average[MOMENTUM_AFTER] == 0) & (average[MOMENTUM_BEFORE] > 0)
-            temperature = _temperature(average, MOMENTUM_AFTER, ENERGY_AFTER)
-            return np.where(merged, 0.0, temperature)
+        def rebound(sums: Array) -> Array:
+            merged = (sums[MOMENTUM_AFTER] == 0) & (sums[MOMENTUM_BEFORE] > 0)
+            return np.where(merged, 0.0, _temperature(sums, MOMENTUM_AFTER, ENERGY_AFTER))
 
         quantities = {
             "contact_force": lambda sums: per_time * (sums[MOMENTUM_BEFORE] + sums[MOMENTUM_AFTER]),

@@ -58,7 +58,8 @@ class TimeCorrelations(Averaged):
     * ``velocity_autocorrelation`` is <v_i(s) v_i(s+t)>,
     * ``mean_squared_displacement`` is <(d_i(s+t) - d_i(s))^2>,
     * ``displacement_autocorrelation`` is <d_i(s) d_i(s+t)> - <d_i>^2, computed as the variance of
-      d_i minus half of the mean squared displacement,
+      d_i minus half of the mean squared displacement; NaN where noise drives the rods ever farther,
+      without a spring or without damping,
     * ``velocity_spectrum`` is 2 int cos(w t) <v_i(s) v_i(s+t)> dt over the lags, by the
       trapezoidal rule, over the angular ``frequency`` w. Its integral over w from 0 on is pi
       <v_i^2>. It includes what aliasing folds down from frequencies above pi over the lag spacing.
@@ -66,12 +67,9 @@ class TimeCorrelations(Averaged):
       5 m/gamma), because correlations that are cut off would falsify it, even to negative values.
 
     ``wave_velocity_autocorrelation`` and so on, over ``wave`` q, are those of the waves that
-    :class:`Modes` defines, and ``centre_velocity_autocorrelation`` and so on those of the centre of
-    mass. On linear springs the latter are those of a damped oscillator, at any restitution. Of two
-    masses, waves are those of m_i v_i and m_i d_i over the mean mass.
-
-    Without a spring, and without damping, the noise drives the rods ever farther. The average of
-    displacements over time then does not exist, and ``displacement_autocorrelation`` is NaN.
+    :class:`Modes` defines, of two masses those of m_i v_i and m_i d_i over the mean mass.
+    ``centre_velocity_autocorrelation`` and so on are those of the centre of mass. On linear springs
+    it is a damped oscillator, at any restitution.
 
     In an ensemble the lag is counted from the first time. All quantities but the spectrum, which
     does not exist, then lie over ``time``, and <d_i(s)> <d_i(s+t)> is subtracted. ``longest`` and
@@ -83,12 +81,10 @@ class TimeCorrelations(Averaged):
     and of the time between two collisions. It is never above 10 steps, and never so short that
     ``longest`` needs more than 300 lags.
 
-    A buffer keeps the last snapshots. All lags are therefore exact, equally far apart as a spectrum
-    needs them, and take 16 ``lags`` bytes per rod and wave, and as much per block. Snapshots are
-    pairs with all earlier ones within reach, so a snapshot takes some ``lags`` operations per rod.
-
-    Errors are those of blocks of twice the longest lag, or of ten to twenty shorter blocks in a run
-    that lasts less than 20 times the longest lag: some errors are then too small by a fifth.
+    All lags are exact, from a buffer of the last snapshots. They take 16 ``lags`` bytes per rod and
+    wave, and as much per block; a snapshot takes some ``lags`` operations per rod. Errors are those
+    of blocks of twice the longest lag, or of ten to twenty shorter blocks in a run that lasts less
+    than 20 times the longest lag: some errors are then too small by a fifth.
 
     Parameters
     ----------
@@ -168,16 +164,18 @@ class TimeCorrelations(Averaged):
     def prepare(self, run: Run, copies: int) -> None:
         super().prepare(run, copies)
         self.spacing, self.last = self._plan(run)
-        self.size, self.anchors, self.chosen = run.chain.size, run.chain.reduced_anchors, run.chosen
-        self.weights = momentum_weights(run.chain)
+        self.anchors, self.weights = run.chain.reduced_anchors, momentum_weights(run.chain)
         self.spreads = run.chain.spreads and not run.ensemble
         self.needed = _memory(run.chain)  # of a spectrum
         self.before = np.zeros((2, max(self.last, 1), self.sums.shape[-1] - 1))
 
     def observe(self, snapshots: Snapshots) -> None:
+        from scipy.fft import dct  # takes half a second, and few runs observe waves
+
         used = slice(-snapshots.first % self.spacing, None, self.spacing)
-        both = snapshots.v[used], snapshots.y[used] - self.anchors
-        now = np.stack([self._series(values) for values in both])
+        rods = np.stack([snapshots.v[used], snapshots.y[used] - self.anchors])
+        waves = dct(self.weights * rods, axis=-1, norm="ortho")[..., : self.waves]
+        now = np.concatenate([rods[..., self.run.chosen], waves], axis=-1)
         sums, new = self.sums[snapshots.block], now.shape[1]
         sums[-2, :-1] += now[1].sum(axis=0)
         sums[-1, :-1] += np.einsum("sp,sp->p", now[1], now[1])
@@ -191,13 +189,6 @@ class TimeCorrelations(Averaged):
         known = np.concatenate([self.before, now], axis=1)
         _add_pairs(sums, known, now, taken, self.last)
         self.before[...] = known[:, new:]
-
-    def _series(self, values: Array) -> Array:
-        """Return the chosen rods and the waves of snapshots, (snapshots, rods and waves)."""
-        from scipy.fft import dct  # takes half a second, and few runs observe waves
-
-        waves = dct(self.weights * values, axis=1, norm="ortho")[:, : self.waves]
-        return np.concatenate([values[:, self.chosen], waves], axis=1)
 
     def _means(self, average: Array, rows: slice) -> Array:
         """Return means (times or lags, series); NaN where there are no terms."""
@@ -224,7 +215,7 @@ class TimeCorrelations(Averaged):
         return np.asarray(self._interval * dct(self._velocities(average), type=1, axis=0))
 
     def report(self, counts: Integers) -> Variables:
-        ensemble, rods = self.run.ensemble, self.chosen.size
+        ensemble, rods = self.run.ensemble, self.run.chosen.size
         quantities = self._velocities, self._displacements, self._increments, self._spectrum
         kinds = dict(zip(_QUANTITIES, quantities, strict=True))
         if ensemble:
@@ -239,14 +230,14 @@ class TimeCorrelations(Averaged):
         variables: Variables = {}
         for name, (_, measured) in self.averages(kinds, self._joined(counts)).items():
             values = np.asarray(measured)
+            own, waves = values[:, :rods], values[:, rods:]
             along = "time" if ensemble else "frequency" if "spectrum" in name else "lag"
-            own = {"particle": ("", values[:, :rods]), "wave": ("wave_", values[:, rods:])}
-            for over, (of, part) in own.items():
-                variables[of + name] = (
-                    ((along, over), part) if ensemble else ((over, along), part.T)
-                )
+            for of, over, part in (("", "particle", own), ("wave_", "wave", waves)):
+                variables[of + name] = ((over, along), part.T)
+                if ensemble:
+                    variables[of + name] = ((along, over), part)
             # The first wave is the sum of all rods over the root of their number.
-            variables["centre_" + name] = ((along,), values[:, rods] / self.size)
+            variables["centre_" + name] = ((along,), waves[:, 0] / self.run.chain.size)
         return variables
 
     def _joined(self, counts: Integers) -> Integers:
@@ -268,7 +259,7 @@ class TimeCorrelations(Averaged):
         return (self.last + 1) * self._interval < self.needed * (1 + 1e-9)
 
     def coordinates(self) -> dict[str, Array]:
-        waves = {"wave": np.arange(self.sums.shape[-1] - 1.0 - self.chosen.size)}
+        waves = {"wave": np.arange(self.sums.shape[-1] - 1.0 - self.run.chosen.size)}
         if self.run.ensemble:
             return waves
         lags = np.arange(self.last + 1.0)
