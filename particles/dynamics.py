@@ -12,7 +12,14 @@ from crazybilliards.model import Chain
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws.closed_contacts import CLOSED_KICK, CRITICAL_RESTITUTION
 from crazybilliards.particles.laws.exact_flight import Propagator, make_propagator
-from crazybilliards.particles.laws.law import TURN, Law, Method, inverse_masses, make_law
+from crazybilliards.particles.laws.law import (
+    TURN,
+    Law,
+    Method,
+    choose_operator,
+    inverse_masses,
+    make_law,
+)
 from crazybilliards.particles.scales import spring_rate
 
 # In velocity kicks of one step: rods that separate more slowly move as one. Below the critical
@@ -73,22 +80,15 @@ def make_dynamics(
     """
     second = chain.replace(mass=chain.mass * chain.mass_ratio, mass_ratio=1.0)
     one, other = (make_step(sort, time_step, stepper, method) for sort in (chain, second))
-    law = make_law(
-        chain,
-        time_step,
-        method,
-        default_merging(chain) if merging is None else merging,
-        speed,
-        counted=counted,
-        struck=struck,
-        halves=stepper == "splitting",
-    )
-    if law.operator == TURN:  # which has the springs in its flight
+    halves = stepper == "splitting"
+    operator = choose_operator(chain, method, counted=counted, struck=struck, halves=halves)
+    if operator == TURN:  # which has the springs in its flight
         one, other = one._replace(kick=0.0), other._replace(kick=0.0)
+    merging = default_merging(chain) if merging is None else merging
+    law = make_law(chain, time_step, operator, merging, speed, halves=halves)
     speed *= math.sqrt(max(chain.mass_ratio, 1 / chain.mass_ratio))  # a heavy rod hits a light one
     fastest = _DIVERGED * speed if speed > 0 else math.inf
-    inverse = inverse_masses(chain)
-    propagator = make_propagator(chain, time_step)
+    propagator, inverse = make_propagator(chain, time_step), inverse_masses(chain)
     return Dynamics(chain.reduced_anchors, one, other, law, propagator, fastest, inverse)
 
 

@@ -1,16 +1,15 @@
 """White noise: normal random numbers, a thousand at a time, for vector instructions.
 
-A chain needs one normal number per rod and step. Drawn one by one they would cost as much as the
-rest of the step. Here sixteen xoshiro256++ generators (Blackman and Vigna, ACM Trans. Math.
-Softw. 47, 36, 2021) run side by side, and the Box-Muller transform
+Drawn one by one they would cost as much as the rest of a step. Here sixteen xoshiro256++ generators
+(Blackman and Vigna, ACM Trans. Math. Softw. 47, 36, 2021) run side by side, and the Box-Muller
+transform
 
     sqrt(-2 ln u) (cos a, sin a),    u uniform in (0, 1), a uniform in (0, 2 pi),
 
-turns their bits into normal numbers. Its functions are computed by polynomials with errors of some
-units in the last place. Every loop then does the same arithmetic for all numbers, and the compiler
-can vectorise it. Multiplications and additions may be fused into one instruction where the machine
-has one, so the last bits may differ between machines. The largest possible number is 8.6 standard
-deviations.
+turns their bits into normal numbers, of 8.6 standard deviations at most. Its functions are computed
+by polynomials with errors of some units in the last place, which the compiler can vectorise.
+Multiplications and additions may be fused into one instruction where the machine has one, so the
+last bits may differ between machines.
 """
 
 from __future__ import annotations
@@ -25,9 +24,7 @@ from crazybilliards.model.kernels import inlined, kernel
 LANES = 16  # generators side by side: two or four vector registers
 BLOCK = 1024  # normal numbers drawn together: all arrays stay in the first-level cache
 
-# Mask of 64 bits. Compiled integers have 64 bits, and the compiler drops the mask. Python's have
-# more.
-_WORD = 0xFFFFFFFFFFFFFFFF
+_WORD = 0xFFFFFFFFFFFFFFFF  # for Python's integers; the compiler drops this mask of its own
 # Exponents written onto 52 bits make a double of them without a conversion: 2^52 + bits.
 _TWO_52 = np.int64(0x4330000000000000)
 _SHIFT = 4503599627370496.0

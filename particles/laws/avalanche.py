@@ -6,8 +6,7 @@ docs/physics/avalanches.md has the rules of the two counts: **triggered**, the p
 which a push runs through a cluster to its far end.
 
 Waves with the same front share their future. They are kept in a linked list that moves as a whole.
-Each counted collision starts at most one wave, and each wave ends once, so one costs O(1) on
-average:
+Each collision starts at most one wave, and each wave ends once, so one costs O(1) on average:
 
     collision of c and c+1    rightward: waves on c+1 end, those on c move to c+1, one starts at c
                               otherwise: waves on c and on c+1 end
@@ -22,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crazybilliards.model.kernels import inlined, kernel
-from crazybilliards.particles.laws.impacts import Speeds, make_impacts, make_speeds
+from crazybilliards.particles.laws.impacts import Speeds, make_impacts
 
 Integers = NDArray[np.int64]
 
@@ -66,7 +65,7 @@ def make_waves(size: int) -> Waves:
 def make_tally(size: int, *, contacts: bool) -> Tally:
     """Return an empty tally for ``size`` rods, without waves and impacts."""
     counted = np.zeros(max(size - 1, 0) if contacts else 0, dtype=np.int64)
-    speeds = make_speeds(0, np.zeros(0))
+    speeds = Speeds(np.zeros(0), np.zeros((0, 0), dtype=np.int64))
     nowhere = np.zeros((2, 0))
     return Tally(counted, make_waves(0), make_waves(0), make_impacts(0), speeds, nowhere)
 

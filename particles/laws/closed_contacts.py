@@ -2,11 +2,9 @@
 
 At e = 0 two rods that have met stay in contact until a kick of the noise separates them, with one
 kick per step longer than in the limit dt -> 0. The excess vanishes if the relative kick of a closed
-contact is ``CLOSED_KICK`` times as strong. ``studies/closed_contact.py`` computes the number, and
-docs/particles.md has the sources, the measured errors, and why the same factor is taken up to the
-critical restitution, below which two rods that meet still come to rest in contact.
-
-Only the deviations of kicks from the mean of their cluster grow, which keeps the momentum.
+contact is ``CLOSED_KICK`` times as strong (``studies/closed_contact.py``). Only deviations from the
+mean kick of a cluster grow, which keeps the momentum. docs/particles.md has the sources, the
+measured errors, and why the factor is taken up to the critical restitution.
 """
 
 from __future__ import annotations

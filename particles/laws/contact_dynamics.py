@@ -8,11 +8,8 @@ with b_i = e (v_i - v_{i+1}) for a contact that would close within the step and 
 b_i = -gap_i/dt for every other contact, which then does not overlap. (With the splitting the
 velocities are corrected for what the springs have not given yet, see ``spring_correction.py``.)
 With B_i the sum of the b_j left of i, u_i - B_i is the isotonic regression of v_i - B_i.
-docs/physics/collisions.md derives this and compares the law with others.
-
-At e > 0 the law takes energy whenever a rod touches both of its neighbours in one step: a contact
-that closes only because of the other one does not bounce. A long run without noise shows this even
-if such steps are rare, as they are with a wide gap.
+docs/physics/collisions.md derives this, compares the law with others, and says what energy it
+takes whenever a rod touches both of its neighbours in one step at e > 0.
 """
 
 import numpy as np

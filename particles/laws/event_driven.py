@@ -1,13 +1,12 @@
 r"""Drift with collisions one at a time, in order: any restitution e >= 0.
 
 Within a step points fly freely, y(t) = y + v t, so neighbours meet at t = (y' - y)/(v - v'). The
-drift finds the contact that closes first. The velocities of its two rods change by
+velocities of the two rods that meet first change by
 
     v - v' -> -e (v - v')      at constant momentum (eq. ``eq:rest`` of the paper),
 
 and at most three contacts get a new time. If contacts close at the same time, the one with the
-larger closing speed is taken first, and of equal speeds the left one. The operator is symmetric
-under reflection, unless neighbouring contacts tie in both, or rounding decides which comes first.
+larger closing speed is taken first, and of equal speeds the left one.
 
 **A calendar** (``calendar.py``) finds the contact that closes first. **Rods that touch** at the
 beginning collide at time 0, row by row, because rows do not know of each other. Where a row or a
@@ -24,11 +23,9 @@ outermost members. docs/physics/collisions.md has the consequences.
 velocity would have had at t = 0. A collision at t changes y by (v_before - v_after) t, and no point
 has to be moved before the end of the step.
 
-**Springs that differ.** With a gap the velocities of two rods that meet, but not of clusters, are
-corrected for what their springs have not given them yet (``spring_correction.py``).
-
-**Unequal masses and walls** have a collision of their own (``unequal.py``), because a branch in the
-one of equal rods would make every chain slower.
+With a gap the velocities of two rods that meet, but not of clusters, are corrected for what their
+springs have not given them yet (``spring_correction.py``). Unequal masses and walls have a
+collision of their own (``unequal.py``): a branch would make the one of equal rods slower.
 """
 
 import numpy as np

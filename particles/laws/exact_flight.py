@@ -1,9 +1,9 @@
 r"""Elastic rods on linear springs with one common anchor: their exact motion over any time.
 
-Elastic rods move as if they passed through each other and swapped names (``sort.py``). Without a
-gap all springs are equal, too, and so are damping and noise. The rods are then independent
-oscillators, and sorting them by their positions gives the chain, exactly, however often they have
-met. For a linear spring the position and the velocity after a time t are jointly normal,
+Elastic rods move as if they passed through each other and swapped names (``sort.py``). On equal
+springs they are then independent oscillators, and sorting them by their positions gives the chain,
+exactly, however often they have met. For a linear spring the position and the velocity after a time
+t are jointly normal,
 
     (y, v)(t) = E (y, v)(0) + noise of covariance Sigma,
     E = exp(B t),   B = [[0, 1], [-k/m, -gamma/m]],
@@ -15,9 +15,8 @@ elastic rods without springs.
 
 E and Sigma of a short time come from one exponential of a matrix (C. F. Van Loan, IEEE Trans.
 Autom. Control 23, 395, 1978). They are doubled from there, Sigma <- Sigma + E Sigma E', E <- E E,
-so that no damping, and no stiffness, is a special case. Squares would also double the rounding
-errors of a rotation, and so let rods that swing n times in a step gain or lose 1e-16 n of their
-energy. E of rods that swing is therefore known from cos(w t), whatever the time.
+so that no damping, and no stiffness, is a special case. Squares would let rods that swing n times
+in a step gain or lose 1e-16 n of their energy, so E of rods that swing comes from cos(w t).
 """
 
 from __future__ import annotations

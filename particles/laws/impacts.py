@@ -1,9 +1,8 @@
 """What single collisions exchange and take, summed up at every contact.
 
-Rods of one mass meet with the closing speed w and separate with w'. With clusters (see
-``event_driven``) of l rods on the left and r on the right, and their reduced mass
-mu = l r/(l + r), in units of a rod's mass, the impulse is mu (w + w'), and the collision takes the
-energy mu (w^2 - w'^2)/2.
+Clusters (see ``event_driven``) of l rods on the left and r on the right, of one mass, meet with the
+closing speed w and separate with w'. With their reduced mass mu = l r/(l + r), in units of a rod's
+mass, the impulse is mu (w + w'), and the collision takes the energy mu (w^2 - w'^2)/2.
 
 The impulse also crosses the contacts within the clusters: j rods beyond a contact of the left
 cluster get the share j/l of it, and in the same way on the right. The impulses at a contact
@@ -22,7 +21,6 @@ from crazybilliards.model.kernels import kernel
 
 # Rows of the sums: mu w, mu w^2/2, mu w', mu w'^2/2, momenta with what crosses within clusters.
 MOMENTUM_BEFORE, ENERGY_BEFORE, MOMENTUM_AFTER, ENERGY_AFTER = range(4)
-ROWS = 4
 
 
 class Speeds(NamedTuple):
@@ -32,14 +30,9 @@ class Speeds(NamedTuple):
     counts: NDArray[np.int64]  # (L - 1, bins); of length 0: nothing is counted
 
 
-def make_speeds(contacts: int, edges: NDArray[np.float64]) -> Speeds:
-    """Return empty counts for ``contacts`` contacts."""
-    return Speeds(edges, np.zeros((contacts, max(edges.size - 1, 0)), dtype=np.int64))
-
-
 def make_impacts(size: int) -> NDArray[np.float64]:
     """Return empty sums for ``size`` rods, shape (4, L - 1); size 0: nothing is summed."""
-    return np.zeros((ROWS, max(size - 1, 0)))
+    return np.zeros((4, max(size - 1, 0)))
 
 
 @kernel

@@ -1,13 +1,13 @@
 """Drift with perfectly inelastic collisions (e = 0): isotonic regression.
 
 Points that stick end at the projection of their free positions y + dt v onto the ordered positions,
-y_1 <= ... <= y_L (L. Natile and G. Savaré, SIAM J. Math. Anal. 41, 1340, 2009), for which
-docs/physics/collisions.md gives the reason. The pool-adjacent-violators algorithm (M. Ayer and
-others, Ann. Math. Statist. 26, 641, 1955) computes it exactly in O(L).
+y_1 <= ... <= y_L (L. Natile and G. Savaré, SIAM J. Math. Anal. 41, 1340, 2009; the reason stands in
+docs/physics/collisions.md). The pool-adjacent-violators algorithm (M. Ayer and others, Ann. Math.
+Statist. 26, 641, 1955) computes it exactly in O(L).
 
-Most rods meet no other rod within a step. Which rods do is random, and a mispredicted branch costs
-a processor more than the arithmetic of a rod. The violations (rods that have overtaken their left
-neighbour) are therefore listed first, without a branch. Only their blocks are then processed.
+Most rods meet no other rod within a step, at random, and a mispredicted branch costs a processor
+more than the arithmetic of a rod. The violations (rods that have overtaken their left neighbour)
+are therefore listed first, without a branch. Only their blocks are then processed.
 """
 
 import numpy as np

@@ -3,10 +3,9 @@
 An operator advances y and v over one step of free flight with collisions. It returns the number of
 collisions (0 where rods are sorted), or -1 if there were too many. ``method="event-driven"`` gives
 the result of one collision after the other: by sorting at e = 1, by isotonic regression at e = 0
-(both in O(L)), and by taking the collisions in their order (``EVENTS``) otherwise, or if every
-collision has to be counted at its contact. ``method="contact-dynamics"`` solves all contacts of a
-step at once. ``EXACT`` is no operator: chains whose motion is known with noise and springs
-(``exact_flight.py``) need none.
+(both in O(L)), and otherwise, or if every collision has to be counted, by taking them in their
+order (``EVENTS``). ``method="contact-dynamics"`` solves all contacts of a step at once. ``EXACT``
+is no operator: chains whose motion is known (``exact_flight.py``) need none.
 """
 
 from __future__ import annotations
@@ -140,12 +139,7 @@ def choose_operator(
 
     ``counted``: every collision has to be recorded. ``struck``: so has every impulse on a wall.
     ``halves``: springs kick before and after the drift. With a gap, collisions are then corrected
-    one by one, so e = 1 cannot be sorted.
-
-    Raises
-    ------
-    ValueError
-        If none of them knows a parameter of the chain.
+    one by one, so e = 1 cannot be sorted. If none knows a parameter this is a ValueError.
     """
     right = [CONTACTS if method == "contact-dynamics" else EVENTS]
     if method == "event-driven" and not counted and chain.box:
@@ -166,23 +160,14 @@ def choose_operator(
 
 
 def make_law(
-    chain: Chain,
-    time_step: float,
-    method: Method,
-    merging: float,
-    speed: float,
-    *,
-    counted: bool = False,
-    halves: bool = True,
-    struck: bool = False,
+    chain: Chain, time_step: float, operator: int, merging: float, speed: float, *, halves: bool
 ) -> Law:
-    """Return the law of the chain; for the last three see :func:`choose_operator`.
+    """Return the law of the chain, in whose steps springs kick in ``halves`` or not.
 
     ``merging`` is in velocity kicks of one step's noise. With little or no noise 1e-9 of the
     typical ``speed`` is used, so that inelastic collapse stays finite.
     """
     pull = chain.stiffness / chain.mass if halves else 0.0
-    operator = choose_operator(chain, method, counted=counted, halves=halves, struck=struck)
     kick = chain.amplitude / chain.mass * math.sqrt(time_step)
     inelastic = min(chain.restitution, chain.wall_restitution) < 1
     merge_speed = max(merging * kick, 1e-9 * speed) if inelastic else 0.0

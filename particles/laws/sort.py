@@ -1,9 +1,8 @@
 """Elastic collisions (e = 1) by sorting: rods pass through each other, then swap names.
 
-Equal masses swap their velocities when they collide elastically, as if they passed through each
-other and swapped names. In the reduced coordinate a drift over dt therefore lets every point fly
-freely, y + dt v, and then sorts the pairs (y, v) by y. The result is exact for any number of
-collisions (D. W. Jepsen, J. Math. Phys. 6, 405, 1965), which it does not count.
+A drift over dt lets every point fly freely, y + dt v, and then sorts the pairs (y, v) by y. The
+result is exact for any number of collisions (D. W. Jepsen, J. Math. Phys. 6, 405, 1965), which it
+does not count.
 
 **The sort** distributes the pairs over two buckets a rod, equally wide. They are then nearly in
 order, and insertion in short runs, which are merged, does the rest. The cost of a rod hardly

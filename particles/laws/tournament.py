@@ -3,9 +3,8 @@
 The contacts are the leaves of a binary tree, and every node above them holds the earlier one of its
 two children. Node k has the children 2k and 2k + 1, the root is node 1, and of n contacts the
 contact c is leaf n + c. A collision changes three leaves, which climb to the root together: the
-first one until it meets the path of the second one, and so on. It costs O(log L). A heap needs as
-many comparisons, but its next step depends on their outcomes, which a processor cannot predict. In
-the tournament the comparisons only select numbers.
+first one until it meets the path of the second one, and so on. It costs O(log L). Unlike those of a
+heap, the comparisons only select numbers: no step depends on what a processor cannot predict.
 """
 
 import numpy as np

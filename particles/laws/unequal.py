@@ -2,16 +2,14 @@ r"""Collisions of rods of unequal masses, and of rods with a wall.
 
 A wall is a rod of infinite mass at rest, without a spring. In a collision of two rods or clusters
 with the inverse masses w and w' (0 for a wall, and for a cluster that rests at one), the left one
-takes the share w/(w + w') of the change of their relative velocity, and the right one the rest.
-Momentum is conserved, and the reduced mass is 1/(w + w'). Rods that merge have the inverse mass
-w w'/(w + w'). The springs of the two give different accelerations (``spring_correction.py``), also
-without a gap, and that of a wall is 0. Masses are in units of the first rod's.
+takes the share w/(w + w') of the change of their relative velocity, and the right one the rest. The
+reduced mass is 1/(w + w'), and rods that merge have the inverse mass w w'/(w + w'). The springs of
+the two give different accelerations (``spring_correction.py``), also without a gap. Masses are in
+units of the first rod's. The threshold below which two rods merge is in kicks of the noise, so it
+is in proportion to the mean of the inverse masses of the two.
 
 **Rods that rest at a wall** stay there when another rod hits them, as part of the wall. The rod
 that flies in rebounds with a restitution of its own (``row_restitution``).
-
-The threshold below which two rods merge is in kicks of the noise, so it is in proportion to the
-mean of the inverse masses of the two rods.
 """
 
 import numpy as np
@@ -119,15 +117,12 @@ def _record_impact(contact, a, b, mass, closing, separating, before, scratch, im
     single, joint = scratch.inverse, scratch.joint
     beyond = 0.0
     for other in range(np.int64(a), np.int64(b)):
+        beyond += 1.0 / single[other] if single[other] > 0.0 else 0.0
         if other == contact:
-            share = 1.0
+            share, beyond = 1.0, 0.0
         elif other < contact:
-            beyond += 1.0 / single[other] if single[other] > 0.0 else 0.0
             share = beyond * joint[contact] if joint[contact] > 0.0 else 1.0
         else:
-            if other == contact + _1:
-                beyond = 0.0
-            beyond += 1.0 / single[other] if single[other] > 0.0 else 0.0
             share = 1.0 - beyond * joint[contact + _1]
         own = other - np.int64(before)
         if 0 <= own < impacts.shape[1]:

@@ -1,16 +1,14 @@
 r"""Two walls, between which the rods move.
 
-In the reduced coordinate all rods have the same room, from ``low`` to ``high``, because rod 1
-meets the left wall at x = -X/2 + R. Collisions one at a time (``event_driven.py``) take a wall as
-one more rod at each end (``unequal.py``). Rods that merge with a wall rest at it until the end of
-the step.
+In the reduced coordinate all rods have the same room, from ``low`` to ``high``. Collisions one at a
+time (``event_driven.py``) take a wall as one more rod at each end (``unequal.py``). Rods that merge
+with a wall rest at it until the end of the step.
 
 **Elastic rods of equal mass** pass through each other and swap names (``sort.py``). If their
 springs have one anchor, or if there are none, each is alone with the walls.
 
 * Without springs the free motion, with noise and damping, has the same law when it is seen in a
-  mirror. The motion between two mirrors is therefore the free one, folded (``fold``), exactly and
-  at any step.
+  mirror. The motion between two mirrors is therefore the free one, folded (``fold``), at any step.
 * A flight on linear springs turns (y, v/w0), w0 = sqrt(k/m), on a circle, and a wall reflects the
   circle. ``turn`` is this flight, exactly. It keeps the Gibbs measure, as damping and noise before
   and after it do, so the steady state is right at any step. Without springs the flight is straight.
@@ -69,18 +67,16 @@ def _strike(flips, momentum, moves_right, struck):  # type: ignore[no-untyped-de
 @kernel
 def turn(y, v, dt, pull, low, high, struck):  # type: ignore[no-untyped-def]
     """Move points on linear springs to y = 0, each alone with two elastic walls at -+ ``high``."""
-    rate = np.sqrt(pull)
-    angle, room = rate * dt, high - low
-    for i in range(y.size):
-        if pull == 0.0:
-            place = y[i] + dt * v[i]
-            turns = np.floor((place - low) / room)
-            inside = min(max(place - turns * room, low), high)
+    if pull == 0.0:
+        for i in range(y.size):
+            y[i] += dt * v[i]
+            turns = np.floor((y[i] - low) / (high - low))
             _strike(np.abs(turns), np.abs(v[i]), v[i] > 0.0, struck)
-            mirrored = turns % 2.0 == 1.0
-            y[i] = low + (high - inside) if mirrored else inside
-            v[i] = -v[i] if mirrored else v[i]
-            continue
+        fold(y, v, low, high)
+        return
+    rate = np.sqrt(pull)
+    angle = rate * dt
+    for i in range(y.size):
         speed = v[i] / rate
         radius = np.hypot(y[i], speed)
         phase = np.arctan2(-speed, y[i])  # y = radius cos(phase)
