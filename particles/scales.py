@@ -1,13 +1,13 @@
-r"""The physical scales of a chain, from which a run is planned.
+r"""The physical scales of a chain, from which a run is planned; docs/particles.md derives them.
 
 **Time step.** The step is 0.05 / max(w0, gamma/m), w0 from :func:`spring_rate`. The splitting
 scheme then has W_x right to 3e-4 (linear springs, no gap). For e != 1 the velocity kick of one step
 is at most 0.3 W_v in the centre, as :func:`centre_width` estimates it, and the error of W_v at most
-1 %. docs/particles.md says why.
+1 %.
 
 **Relaxation time.** It is that of a rod on a linear spring, whose stiffness is estimated for
-quadratic springs, and in a box at most that of a gas without springs. docs/particles.md derives
-both. The step resolves the lightest rod; the relaxation waits for the heaviest.
+quadratic springs, and in a box at most that of a gas without springs. The step resolves the
+lightest rod; the relaxation waits for the heaviest.
 """
 
 from __future__ import annotations
@@ -55,25 +55,21 @@ def centre_width(chain: Chain) -> float:
     In a box the collisions of uncorrelated rods in a free length l are at least as frequent as
     these: w^2 - 1 + (1 - e^2) w^3 W m L/(sqrt(pi) gamma l) = 0.
     """
-    e = chain.restitution
-    if e >= 1 or chain.damping == 0 or chain.stiffness == chain.box == 0:
-        return 1.0
-    in_box = _width_in_box(chain)
-    if chain.stiffness == 0:
-        return in_box
-    neighbours = chain.size / (1 + chain.gap * chain.size / max(2.5 * chain.thermal_length, 1e-60))
-    rate = spring_rate(chain) * chain.mass / chain.damping
-    return min(1 / math.sqrt(1 + (0.1 + 0.14 * e**4) * (1 - e**2) * neighbours * rate), in_box)
-
-
-def _width_in_box(chain: Chain) -> float:
-    """Return the root w of the energy balance of a gas in a box, at e < 1."""
-    if not chain.box:
-        return 1.0
-    free_path = 2 * chain.walls[1] / chain.size * chain.damping / math.sqrt(chain.mean_mass)
-    loss = (1 - chain.restitution**2) * math.sqrt(chain.temperature / math.pi) / free_path
-    roots = np.roots([loss, 1.0, 0.0, -1.0])
-    return float(roots.real[np.isreal(roots) & (roots.real > 0)][0])
+    e, width = chain.restitution, 1.0
+    if e >= 1 or chain.damping == 0:
+        return width
+    if chain.box:
+        free_path = 2 * chain.walls[1] / chain.size * chain.damping / math.sqrt(chain.mean_mass)
+        loss = (1 - e**2) * math.sqrt(chain.temperature / math.pi) / free_path
+        roots = np.roots([loss, 1.0, 0.0, -1.0])
+        width = float(roots.real[np.isreal(roots) & (roots.real > 0)][0])
+    if chain.stiffness > 0:
+        length = max(2.5 * chain.thermal_length, 1e-60)
+        neighbours = chain.size / (1 + chain.gap * chain.size / length)
+        rate = spring_rate(chain) * chain.mass / chain.damping
+        cooling = (0.1 + 0.14 * e**4) * (1 - e**2) * neighbours * rate
+        width = min(1 / math.sqrt(1 + cooling), width)
+    return width
 
 
 def default_time_step(chain: Chain) -> float:
@@ -97,15 +93,14 @@ def default_time_step(chain: Chain) -> float:
 def relaxation_time(chain: Chain) -> float:
     """Time in which a chain forgets its start [t_0], but for a factor e.
 
-    It is infinite without damping, and if neither springs nor walls hold the rods.
-
-    It is the time constant of the chain's slowest mode. With linear springs this is the motion of
-    the centre of mass, on which collisions do not act: exactly 2m/gamma for weak damping, and about
-    gamma/k for strong damping, at every restitution. All other modes are as fast at e = 1, and not
-    slower in simulations with e < 1. For quadratic springs the time is an estimate, which is right
-    to a third (docs/particles.md derives it). A gas without springs forgets its density last, in a
-    box of free length l by diffusion in gamma l^2/(pi^2 T), or in sqrt(2) l/(pi W) if damping is
-    weak. For e > 1 the time is a lower bound: near the critical size the energy takes longer.
+    It is the time constant of the chain's slowest mode, infinite without damping, and if neither
+    springs nor walls hold the rods. With linear springs this mode is the motion of the centre of
+    mass, on which collisions do not act: exactly 2m/gamma for weak damping, and about gamma/k for
+    strong damping, at every restitution. No other mode is slower, at e < 1 in simulations. For
+    quadratic springs the time is an estimate, which is right to a third (docs/particles.md derives
+    it). A gas without springs forgets its density last, in a box of free length l by diffusion in
+    gamma l^2/(pi^2 T), or in sqrt(2) l/(pi W) if damping is weak. For e > 1 the time is a lower
+    bound: near the critical size the energy takes longer.
 
     Take a warm-up of at least five times it (the default is 12), and durations of hundreds.
 
@@ -124,11 +119,11 @@ def settling_time(chain: Chain) -> float:
     """Return the relaxation time or, where nothing ties the rods, that of velocities [t_0]."""
     if chain.damping == 0:
         return math.inf
-    times = [_settling_time(chain, float(mass)) for mass in chain.rod_masses[:2]]
+    time = max(_settling_time(chain, float(mass)) for mass in chain.rod_masses[:2])
     if chain.box and chain.temperature > 0:
         in_box = max(2 * chain.rod_masses[:2].max() / chain.damping, _crossing_time(chain))
-        return float(in_box if chain.stiffness == 0 else min(max(times), in_box))
-    return max(times)
+        return float(in_box if chain.stiffness == 0 else min(time, in_box))
+    return time
 
 
 def _crossing_time(chain: Chain) -> float:

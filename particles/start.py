@@ -122,21 +122,22 @@ def replica_starts(
 
 def _require_apart(chain: Chain, y: Array, tolerance: float) -> None:
     """Raise a ValueError that names the rods that overlap most, or the one most inside a wall."""
-    over, (low, high) = -np.diff(y, axis=1), chain.walls
-    if (over > tolerance).any():
-        replica, rod = np.unravel_index(np.argmax(over), over.shape)
+    low, high = chain.walls
+    over = -np.diff(y, axis=1, prepend=low, append=high)
+    replica, rod = np.unravel_index(np.argmax(over), over.shape)
+    if over[replica, rod] <= tolerance:
+        return
+    where = f"of replica {replica + 1}"
+    if 0 < rod < chain.size:
         raise ValueError(
-            f"start must hold rods in order that do not overlap: rods {rod + 1} and {rod + 2} of "
-            f"replica {replica + 1} overlap by {over[replica, rod]:.4g} R"
+            f"start must hold rods in order that do not overlap: rods {rod} and {rod + 1} {where} "
+            f"overlap by {over[replica, rod]:.4g} R"
         )
-    beyond = np.stack([low - y[:, 0], y[:, -1] - high], axis=1)
-    if (beyond > tolerance).any():
-        replica, side = np.unravel_index(np.argmax(beyond), beyond.shape)
-        raise ValueError(
-            f"start must hold rods between the walls: their centres lie within "
-            f"{chain.box / 2 - chain.radius:g} of the middle, and rod {(1, chain.size)[side]} of "
-            f"replica {replica + 1} is {beyond[replica, side]:.4g} R too far out"
-        )
+    raise ValueError(
+        f"start must hold rods between the walls: their centres lie within "
+        f"{chain.box / 2 - chain.radius:g} of the middle, and rod {max(rod, 1)} {where} is "
+        f"{over[replica, rod]:.4g} R too far out"
+    )
 
 
 def _states(start: xr.Dataset) -> list[Array]:

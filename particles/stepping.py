@@ -72,20 +72,20 @@ def draw_kicks(noise, kicks, width, due):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _find_clusters(y, law, scratch):  # type: ignore[no-untyped-def]
-    """Find the rods in contact, which isotonic regression has listed already."""
-    if law.operator != ISOTONIC:
-        find_clusters(y, scratch.clusters, law.low, law.high)
+def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-untyped-def]
+    """Kick the rods and, unless it was the LAST half, let them drift; changes ``kicks``, (L,).
 
-
-@inlined(once=True)
-def _take_unequal_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-untyped-def]
-    """Do as ``take_step``, with rods of unequal masses or between walls."""
-    anchors, step, second = dynamics.anchors, dynamics.step, dynamics.second
+    Return the collisions, or -1 if the chain diverged.
+    """
+    anchors, step, second, law = dynamics.anchors, dynamics.step, dynamics.second, dynamics.law
     strength = step.closed_outer if part == FIRST else step.closed
     if strength != 1.0 and part != LAST:
-        _find_clusters(y, dynamics.law, scratch)
-        unequal.strengthen(kicks, y, strength, dynamics.law, scratch)
+        if law.operator != ISOTONIC:  # which has listed them
+            find_clusters(y, scratch.clusters, law.low, law.high)
+        if law.unequal:
+            unequal.strengthen(kicks, y, strength, law, scratch)
+        else:
+            strengthen(kicks, scratch.clusters, strength)
     if step.decay == second.decay and step.noise == second.noise and step.kick == second.kick:
         kick(y, v, anchors, kicks, step, part)
     else:  # one sort after the other, which takes longer
@@ -93,27 +93,7 @@ def _take_unequal_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ig
         kick(y[1::2], v[1::2], anchors[1::2], kicks[1::2], second, part)
     if part == LAST:
         return 0
-    return drift(y, v, anchors, step.time_step, dynamics.law, scratch, tally)
-
-
-@inlined
-def take_step(y, v, kicks, part, dynamics, scratch, tally):  # type: ignore[no-untyped-def]
-    """Kick the rods and, unless it was the LAST half, let them drift; changes ``kicks``, (L,).
-
-    Return the collisions, or -1 if the chain diverged.
-    """
-    if dynamics.law.unequal:
-        return _take_unequal_step(y, v, kicks, part, dynamics, scratch, tally)
-    step = dynamics.step
-    if part == LAST:
-        kick(y, v, dynamics.anchors, kicks, step, LAST)
-        return 0
-    strength = step.closed_outer if part == FIRST else step.closed
-    if strength != 1.0:
-        _find_clusters(y, dynamics.law, scratch)
-        strengthen(kicks, scratch.clusters, strength)
-    kick(y, v, dynamics.anchors, kicks, step, part)
-    return drift(y, v, dynamics.anchors, step.time_step, dynamics.law, scratch, tally)
+    return drift(y, v, anchors, step.time_step, law, scratch, tally)
 
 
 @inlined
@@ -197,13 +177,13 @@ def record_flight(y, v, noise, dynamics, scratch, stride, y_buffer, v_buffer):  
 def record_steps(y, v, noise, dynamics, scratch, tally, stride, y_buffer, v_buffer):  # type: ignore[no-untyped-def]
     """Do as ``record`` does, in steps of kicks and drifts."""
     collisions = 0
-    _copy_records(tally, scratch, tally)
+    _copy_records(tally, scratch.kept, tally)
     for snapshot in range(y_buffer.shape[0]):
         number = _step(y, v, noise, dynamics, scratch, tally, stride)
         if number < 0 or not bounded(y, v, dynamics.fastest):
-            _copy_records(scratch, tally, tally)
+            _copy_records(scratch.kept, tally, tally)
             return snapshot, collisions
-        _copy_records(tally, scratch, tally)
+        _copy_records(tally, scratch.kept, tally)
         collisions += number
         copy(y, y_buffer[snapshot])
         copy(v, v_buffer[snapshot])

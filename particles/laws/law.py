@@ -28,6 +28,7 @@ from crazybilliards.particles.laws import (
     walls,
     weighted,
 )
+from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.closed_contacts import Clusters, make_clusters
 from crazybilliards.particles.laws.exact_flight import independent_rods
 from crazybilliards.particles.laws.impacts import make_impacts
@@ -83,12 +84,10 @@ class Scratch(NamedTuple):
     counts: NDArray[np.int32]  # of the rods in each bucket
     clusters: Clusters  # rods in contact after the last drift, if the law needs them
     kicks: NDArray[np.float64]  # of the noise, for one step or several, one after the other
-    contacts: NDArray[np.int64]  # a copy of what was counted up to the last snapshot, (L,)
-    impacts: NDArray[np.float64]  # the same of what was summed, (4, L)
+    kept: Tally  # a copy of what was recorded up to the last snapshot
     inverse: NDArray[np.float64]  # inverse masses, with the walls; empty: all 1, and no walls
     joint: NDArray[np.float64]  # the same of clusters, at their outermost rods
     walled: NDArray[np.float64]  # y, v and anchors of rods and walls, (3, L + 2)
-    struck: NDArray[np.float64]  # a copy of what the walls received, (2, 2)
     patience: NDArray[np.int64]  # collisions after which a step is given up; Ctrl-C lowers it, (1,)
 
 
@@ -108,6 +107,7 @@ def make_scratch(
     """Return the scratch space for so many rods, with two walls or not: 220 bytes a rod."""
     size = max(rods, inverse.size)
     nodes = np.arange(2 * size, dtype=np.uint64)
+    kept = make_tally(rods, contacts=True)
     return Scratch(
         np.zeros((3, size), dtype=np.int64),
         np.zeros((4, rods)),
@@ -122,12 +122,10 @@ def make_scratch(
         make_clusters(size),
         # The exact flight takes two numbers a rod.
         np.zeros(max(2, BLOCK // rods) * rods),
-        np.zeros(rods, dtype=np.int64),
-        make_impacts(rods + 1),
+        kept._replace(impacts=make_impacts(rods), struck=np.zeros((2, 2))),
         inverse,
         inverse.copy(),
         np.zeros((3, size if size > rods else 0)),
-        np.zeros((2, 2)),
         patience,
     )
 
@@ -184,32 +182,24 @@ def make_law(
 
 
 @inlined(once=True)
-def _drift_unequal(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
-    """Drift as ``drift`` does with rods of unequal masses, or between walls."""
-    if law.operator == ISOTONIC:
-        return weighted.stick(y, v, dt, law, scratch)
-    if law.operator == CONTACTS:
-        return weighted.solve(y, v, anchors, dt, law, scratch)
+def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
+    """Advance ``y`` and ``v`` in place by ``dt`` with the operator that ``law`` names."""
+    if law.operator == SORT:
+        sort.drift(y, v, dt, scratch)
+        return 0
     if law.operator == TURN:
         walls.turn(y, v, dt, law.pull, law.low, law.high, tally.struck)
         sort.sort_pairs(y, v, scratch)
         return 0
-    if law.high < np.inf:
-        return walls.drift(y, v, anchors, dt, law, scratch, tally)
-    return event_driven.drift(y, v, anchors, dt, law, scratch, tally)
-
-
-@inlined(once=True)
-def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
-    """Advance ``y`` and ``v`` in place by ``dt`` with the operator that ``law`` names."""
-    if law.unequal:
-        return _drift_unequal(y, v, anchors, dt, law, scratch, tally)
-    if law.operator == SORT:
-        sort.drift(y, v, dt, scratch)
-        return 0
     if law.operator == ISOTONIC:
+        if law.unequal:
+            return weighted.stick(y, v, dt, law, scratch)
         return isotonic.drift(y, v, dt, scratch.integers[0], scratch.floats, scratch.clusters)
     if law.operator == CONTACTS:
+        if law.unequal:
+            return weighted.solve(y, v, anchors, dt, law, scratch)
         spring_and_scratch = law.pull, law.exponent, scratch.integers, scratch.floats
         return contact_dynamics.drift(y, v, anchors, dt, law.restitution, *spring_and_scratch)
+    if law.high < np.inf:
+        return walls.drift(y, v, anchors, dt, law, scratch, tally)
     return event_driven.drift(y, v, anchors, dt, law, scratch, tally)

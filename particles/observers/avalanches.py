@@ -48,11 +48,9 @@ class Avalanches(_CountedWaves):
     """avalanche_count: rightward waves started by each particle that triggered N_c collisions.
 
     The first hit counts and must have a momentum that points right. Rods that stick together pass a
-    push on. This count is our extension; the paper's is :class:`TriggeredCollisions`.
-
-    The collision kernel itself counts (``particles/laws/avalanche.py``). By symmetry leftward waves
-    are those of the mirrored particles. In a dissipative chain the counts depend on the time step.
-    In a chain that diverges they include the diverging steps. They take 16 L^2 bytes.
+    push on. This count is our extension; the paper's is :class:`TriggeredCollisions`. Leftward
+    waves are those of the mirrored particles. In a dissipative chain the counts depend on the time
+    step. In a chain that diverges they include the diverging steps. They take 16 L^2 bytes.
     """
 
     name = "avalanches"

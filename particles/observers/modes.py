@@ -26,9 +26,7 @@ class Modes(Averaged):
     W^2 of a free rod at any restitution.
 
     Of two masses the modes are those of the momentum: v_i is multiplied by m_i over the mean mass
-    <m>. At e = 1 all have T/<m>.
-
-    The sums take 8 L bytes per block, where the covariances of all pairs would take L times that.
+    <m>. At e = 1 all have T/<m>. The sums take 8 L bytes per block.
     """
 
     name = "modes"

@@ -17,10 +17,8 @@ class Raw(Observer):
 
     It takes 16 bytes per particle, snapshot and replica, so ask for few snapshots with ``every``.
     Snapshots that an interrupted run did not reach are NaN. A single time of all particles can be
-    the start of another run, ``run.isel(time=-1)``. The start is a part of the seed of that run,
-    which therefore has other noise with the same ``seed``, too. Any other observers can be
-    recorded beside it. Velocity distributions lie over ``velocity_bin``, and the energy is then
-    that of every snapshot.
+    the start of another run, ``run.isel(time=-1)``, which has other noise with the same ``seed``,
+    too. The energy beside it is that of every snapshot.
     """
 
     name = "snapshots"
@@ -31,7 +29,6 @@ class Raw(Observer):
 
     def prepare(self, run: Run, copies: int) -> None:
         self.run = run
-        self.chosen = run.chosen
         self.offsets = run.chain.physical(np.zeros(run.chain.size))[run.chosen]
         self.y, self.v = np.full((2, copies, run.snapshots, run.chosen.size), np.nan)
 
@@ -40,8 +37,8 @@ class Raw(Observer):
 
     def observe(self, snapshots: Snapshots) -> None:
         place = slice(snapshots.first, snapshots.first + len(snapshots.y))
-        self.y[snapshots.copy, place] = snapshots.y[:, self.chosen]
-        self.v[snapshots.copy, place] = snapshots.v[:, self.chosen]
+        self.y[snapshots.copy, place] = snapshots.y[:, self.run.chosen]
+        self.v[snapshots.copy, place] = snapshots.v[:, self.run.chosen]
 
     def join(self, others: Sequence[Self]) -> None:
         self.y = np.concatenate([self.y, *(other.y for other in others)])

@@ -39,10 +39,9 @@ class Velocities(Averaged):
     the velocities themselves: in the bins even an exact Gaussian has an excess of 0.003.
 
     The bins are equally wide in arsinh(v / 0.05 W). With 401 of them they are 0.0025 W wide near 0
-    and 5 % of v wide far out, up to 1000 W. They resolve the narrow centre of a dissipative chain
-    as well as the tails of an anti-dissipative one, without a pilot run. Where no noise and damping
-    give a free width W, it is the largest speed that the energy of the start gives a rod. They take
-    8 bytes per bin and particle, and the moments 32 bytes per block and particle.
+    and 5 % of v wide far out, up to 1000 W, for narrow centres and long tails alike. Where no noise
+    and damping give a free width W, it is the largest speed that the energy of the start gives a
+    rod. They take 8 bytes per bin and particle, and the moments 32 bytes per block and particle.
 
     Parameters
     ----------
@@ -107,9 +106,8 @@ class Velocities(Averaged):
 
     def join(self, others: Sequence[Self]) -> None:
         super().join(others)
-        for other in others:
-            self.counts += other.counts
-            self.outside += other.outside
+        self.counts += sum(other.counts for other in others)
+        self.outside += sum(other.outside for other in others)
 
     def report(self, counts: Integers) -> Variables:
         snapshots = counts.sum()

@@ -1,11 +1,10 @@
 """Checkpoints: the whole state of a run in one file, from which the run can continue.
 
 A checkpoint holds the positions, the velocities, the state of the noise and the sums of the
-observers of every replica. It also holds the identity of the run: parameters, times, seed, and a
-fingerprint of the source code. Without the fingerprint an edited kernel would continue the old run.
-The file is written atomically, carries a checksum, and is used by one process at a time. Replicas
-are saved between two chunks. The boundaries of chunks do not depend on the time of saving, so a
-resumed run gives the same bits as an undisturbed one.
+observers of every replica, and the identity of the run: parameters, times, seed, and a fingerprint
+of the source code, because an edited kernel must not continue the old run. The file is written
+atomically, carries a checksum, and is used by one process at a time. Replicas are saved between two
+chunks, whose boundaries do not depend on the time of saving, so a resumed run gives the same bits.
 """
 
 from __future__ import annotations
@@ -119,12 +118,8 @@ class Checkpoint:
                 f"{self.path}: the checkpoint of another call, which differs in "
                 f"{', '.join(differing)}; remove the file to start anew"
             )
-        states: dict[str, dict[str, np.ndarray]] = {}
-        for name, value in arrays.items():
-            number, _, own = name.partition("/")
-            states.setdefault(number, {})[own] = value
         try:
-            for place, replica in enumerate(replicas):
-                replica.restore(states[str(place)])
+            for number, replica in enumerate(replicas):
+                replica.restore(arrays, f"{number}/")
         except (KeyError, TypeError, ValueError) as error:
             raise ValueError(f"{self.path}: a checkpoint without a part of the run") from error

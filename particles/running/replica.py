@@ -33,8 +33,8 @@ def make_replicas(run: Run) -> list[Replica]:
 class Replica:
     """State and measurements of one copy of the chain, or of several, one after another.
 
-    In an ensemble the replicas form groups that share their observers, so that a thousand replicas
-    take no more memory than a few. ``members``: the numbers of the replicas of the group, from 0.
+    In an ensemble groups of replicas share their observers, which saves memory. ``members``: the
+    numbers of the replicas of the group, from 0.
     """
 
     # Attributes that a checkpoint keeps.
@@ -71,10 +71,10 @@ class Replica:
         """Return what a checkpoint keeps."""
         return {key: getattr(owner, name) for key, owner, name in self._kept()}
 
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Restore the state that :meth:`state` returned."""
+    def restore(self, state: Mapping[str, NDArray[Any]], prefix: str) -> None:
+        """Restore what :meth:`state` returned, from keys with a prefix."""
         for key, owner, name in self._kept():
-            restore(owner, name, state[key])
+            restore(owner, name, state[prefix + key])
 
     @property
     def total(self) -> float:
