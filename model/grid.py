@@ -57,18 +57,9 @@ def bins_per_rod(chain: Chain, reach: float | None = None) -> int:
 def position_grid(chain: Chain, reach: float | None = None) -> NDArray[np.float64]:
     """Nodes x, uniform and symmetric about 0, that hold every rod and its smoothing [R].
 
-    Parameters
-    ----------
-    chain
-        The chain; its outer anchors set the extent.
-    reach
-        Largest displacement from the anchor to make room for; ``thermal_reach(chain)`` if None.
-
-    Raises
-    ------
-    ValueError
-        If the 200 bytes per node that a theory needs are not available, or if the chain is so
-        long that displacements are lost in the rounding of positions.
+    ``reach``: the largest displacement from the outer anchors to make room for;
+    ``thermal_reach(chain)`` if None. It is a ValueError if the 200 bytes per node that a theory
+    needs are not available, or if displacements are lost in the rounding of positions.
     """
     half_width = _half_width(chain, reach)
     require_resolved(chain, half_width)

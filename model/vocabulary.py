@@ -138,12 +138,10 @@ def result(
     particles: ArrayLike | None = None,
     vocabulary: Mapping[str, tuple[str, str]] | None = None,
 ) -> xr.Dataset:
-    """Build a result in the common vocabulary: coordinates, units, status and provenance.
+    """Build a result of a chain in the common vocabulary: coordinates, units, status, provenance.
 
     Parameters
     ----------
-    chain
-        The chain it belongs to.
     variables
         ``{name: (dims, values)}``; each name, or NAME of NAME_error, stands in a vocabulary.
     source
@@ -163,10 +161,7 @@ def result(
     vocabulary
         Meanings and units of names that are not in ``VOCABULARY``, such as an observer's own.
 
-    Raises
-    ------
-    ValueError
-        If the label does not grow by the number of the chain's rods, to 1e-6 of it.
+    It is a ValueError if the label does not grow by the number of the chain's rods, to 1e-6 of it.
     """
     if "label" in variables:
         _require_all_rods(chain, variables["label"][1])
@@ -207,11 +202,7 @@ def result(
 
 
 def described(meaning: str, unit: str) -> dict[str, str]:
-    """Return the attributes of a variable.
-
-    R and M are written R_0 and M_0, because libraries of units take R for the gas constant.
-    :func:`unit_of` gives them as they are in the vocabulary.
-    """
+    """Return the attributes of a variable. Libraries of units take R for the gas constant: R_0."""
     return {"long_name": meaning, "units": re.sub("[RM]", r"\g<0>_0", unit)}
 
 
@@ -261,10 +252,7 @@ def require(dataset: xr.Dataset, names: Collection[str], who: str = "the result"
 
 
 def refuse_unread(given: xr.Dataset, who: str, read: Collection[str]) -> None:
-    """Raise a ValueError naming a variable that ``who`` does not read.
-
-    A simulation or a theory may hold others.
-    """
+    """Raise a ValueError naming a variable that ``who`` does not read; results may hold others."""
     is_result = given.attrs.get("source") in ("simulation", "theory")
     for name in map(str, given.data_vars):
         if not (is_result or name in read):

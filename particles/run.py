@@ -1,7 +1,6 @@
 """The description of a run: the checked arguments of ``simulate`` that determine its numbers.
 
 It is made once, before any work, and counts the run in whole steps, snapshots and blocks.
-Observers, kernels, checkpoints and the provenance read it.
 """
 
 from __future__ import annotations
@@ -89,11 +88,8 @@ class Run:
         require_memory(f"observe ({few}): {names}", rest + _COPIES * sums)
 
     def _require_known(self) -> None:
-        """Raise a ValueError if anything that reads the chain does not know a parameter of it.
-
-        The start refuses by itself, see :attr:`starts`.
-        """
-        if not self.exact:  # which refuses by itself, too
+        """Raise a ValueError if anything that reads the chain does not know a parameter of it."""
+        if not self.exact:  # which refuses by itself, as the start does
             self.chain.require_known("simulate (springs, damping and noise)", dynamics.knows)
         self.chain.require_known("simulate (its time scales)", scales.knows)
         for observer in self.observers:
@@ -211,10 +207,7 @@ class Run:
 
     @cached_property
     def streams(self) -> list[np.random.SeedSequence]:
-        """The random numbers of every replica; a given start is a part of their seed.
-
-        Otherwise a run that continues another one would repeat its noise.
-        """
+        """The random numbers of every replica. One that continues another must not repeat them."""
         start = [] if self.start is None else list(digest(self.starts))
         return np.random.SeedSequence([self.seed, *start]).spawn(self.replicas)
 
@@ -268,22 +261,12 @@ class Run:
     @property
     def provenance(self) -> dict[str, Any]:
         """Everything except the chain that determines the numbers, in a form for JSON."""
+        same = ("method", "stepper", "merging", "seed", "replicas")
+        steps = ("time_step", "warmup_steps", "stride", "blocks", "snapshots", "block", "ensemble")
         return {
-            "method": self.method,
-            "stepper": self.stepper,
-            "merging": self.merging,
-            "seed": self.seed,
-            "replicas": self.replicas,
+            **{name: getattr(self, name) for name in same},
             "observe": [str(observer) for observer in self.observers],
             "particles": "all" if self.particles is None else (self.chosen + 1).tolist(),
             "start": "at rest" if self.start is None else f"sha256 {digest(self.starts).hex()}",
-            "schedule": {
-                "time_step": self.time_step,
-                "warmup_steps": self.warmup_steps,
-                "stride": self.stride,
-                "blocks": self.blocks,
-                "snapshots": self.snapshots,
-                "block": self.block,
-                "ensemble": self.ensemble,
-            },
+            "schedule": {name: getattr(self, name) for name in steps},
         }

@@ -11,9 +11,9 @@ r"""Time stepping: kicks (spring, damping, noise) alternate with drifts (flight 
 
 With collisions in their order it is of second order, in transients too, as long as no rods merge,
 and symmetric in time at e = 1. Contact Dynamics makes it of first order. Part 5 of a step and part
-1 of the next are done as one over dt, with one draw of noise per step. Parts 2-4 are the symplectic
-Verlet scheme, and 1 and 5 leave a Maxwellian unchanged. A linear elastic chain without a gap
-therefore has exactly the right velocity width at any dt, and <d^2> = (T/k)/(1 - (w0 dt/2)^2).
+1 of the next are done as one over dt. A linear elastic chain without a gap has exactly the right
+velocity width at any dt, because 2-4 are the symplectic Verlet scheme, and 1 and 5 leave a
+Maxwellian unchanged, and <d^2> = (T/k)/(1 - (w0 dt/2)^2).
 
 **euler** (the paper's, eq. ``eq:discrete``). v <- v + (dt/m)(-F(d) - gamma v) + (A/m) sqrt(dt) xi,
 then the drift. It is of first order: a free rod without a spring has
@@ -63,8 +63,7 @@ def kick(y, v, anchors, kicks, step, part):  # type: ignore[no-untyped-def]
 def draw_kicks(noise, kicks, width, due):  # type: ignore[no-untyped-def]
     """Fill ``kicks`` for as many of the ``due`` steps of ``width`` numbers as have room.
 
-    Return for how many. Several are drawn at once, because one by one is slower. The noise is
-    inlined (``model/kernels.py``) in whichever kernel of this file is compiled first.
+    Return for how many. One by one is slower.
     """
     rows = min(kicks.size // width, due)
     fill(noise, kicks[: rows * width])
@@ -204,14 +203,11 @@ def record(
     """Fill the buffers, shape (snapshots, L), with the state after every ``stride`` steps.
 
     ``y`` and ``v`` are float arrays of shape (L,) in the reduced coordinate, changed in place.
-    ``noise`` is a stream for this thread alone (``noise.py``). For ``scratch`` see ``laws/law.py``,
-    for ``tally`` ``laws/avalanche.py``.
 
     Return the number of valid snapshots and the collisions until then, which are 0 where rods are
     sorted. There are fewer snapshots than the buffers have room for if the chain diverged,
     because a drift had too many collisions or a rod became too fast. Contacts and impacts are then
-    those up to the last valid snapshot, but avalanches and speeds of impacts
-    include those of diverging steps.
+    those up to the last valid snapshot, but avalanches and speeds of impacts include all.
     """
     state = y, v, noise, dynamics, scratch
     if dynamics.law.operator == EXACT:
@@ -231,8 +227,7 @@ def advance(
 def compile_kernels(flights: Iterable[bool] = (True, False)) -> None:
     """Compile the kernels, or load them from numba's cache.
 
-    ``flights``: whether the motions of the chains are known exactly. Such chains need few of the
-    kernels, which take a sixth of the time.
+    ``flights``: whether the motions of the chains are known exactly, which needs few kernels.
     """
     y, v = np.zeros((2, 2))
     state = y, v, make_noise(np.random.SeedSequence(0))

@@ -21,13 +21,9 @@ from crazybilliards.particles.laws.tournament import INDEX
 
 
 @kernel
-def bound(gap, closing, restitution, dt, left, right, pull, exponent):  # type: ignore[no-untyped-def]
-    """Least relative velocity u_{i+1} - u_i of a contact; ``closing`` is v_i - v_{i+1}.
-
-    ``left`` and ``right`` are the displacements. For ``pull`` and ``exponent`` see ``drift``.
-    """
+def bound(gap, closing, restitution, ahead, dt):  # type: ignore[no-untyped-def]
+    """Least relative velocity u_{i+1} - u_i of a contact; ``closing`` is v_i - v_{i+1}."""
     if restitution > 0 and gap < dt * closing:
-        ahead = springs_ahead(left, right, pull, exponent, -dt / 2)
         return max(restitution * (closing - ahead) - ahead, -gap / dt)
     return -gap / dt
 
@@ -44,9 +40,9 @@ def drift(y, v, anchors, dt, restitution, pull, exponent, integers, floats):  # 
     count, total, before = INDEX(0), 0.0, v[0]
     shifted[0], totals[0] = before, total
     for i in range(y.size - 1):
-        contact = y[i + 1] - y[i], v[i] - v[i + 1], restitution, dt
         displacements = y[i] - anchors[i], y[i + 1] - anchors[i + 1]
-        total += bound(*contact, *displacements, pull, exponent)
+        ahead = springs_ahead(*displacements, pull, exponent, -dt / 2)
+        total += bound(y[i + 1] - y[i], v[i] - v[i + 1], restitution, ahead, dt)
         free = v[i + 1] - total
         shifted[i + 1], totals[i + 1] = free, total
         violations[count] = i + 1

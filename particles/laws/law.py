@@ -73,7 +73,7 @@ class Scratch(NamedTuple):
     """Arrays the kernels work in, made once for each replica."""
 
     integers: NDArray[np.int64]  # (3, L)
-    floats: NDArray[np.float64]  # (4, L)
+    floats: NDArray[np.float64]  # (4, L), or with walls (4, L + 2)
     first: NDArray[np.int64]  # rods of the cluster at each rod in ``event_driven``, (L,)
     last: NDArray[np.int64]
     due: NDArray[np.float64]  # when contacts close there, (2 L,)
@@ -87,7 +87,6 @@ class Scratch(NamedTuple):
     kept: Tally  # a copy of what was recorded up to the last snapshot
     inverse: NDArray[np.float64]  # inverse masses, with the walls; empty: all 1, and no walls
     joint: NDArray[np.float64]  # the same of clusters, at their outermost rods
-    walled: NDArray[np.float64]  # y, v and anchors of rods and walls, (3, L + 2)
     patience: NDArray[np.int64]  # collisions after which a step is given up; Ctrl-C lowers it, (1,)
 
 
@@ -110,7 +109,7 @@ def make_scratch(
     kept = make_tally(rods, contacts=True)
     return Scratch(
         np.zeros((3, size), dtype=np.int64),
-        np.zeros((4, rods)),
+        np.zeros((4, size)),
         np.arange(size),
         np.arange(size),
         np.zeros(2 * size),
@@ -125,7 +124,6 @@ def make_scratch(
         kept._replace(impacts=make_impacts(rods), struck=np.zeros((2, 2))),
         inverse,
         inverse.copy(),
-        np.zeros((3, size if size > rods else 0)),
         patience,
     )
 

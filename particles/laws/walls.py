@@ -24,7 +24,7 @@ from crazybilliards.particles.laws import event_driven
 def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` by ``dt``, one collision after the other; return their number."""
     n = y.size
-    places, speeds, ties = scratch.walled[0], scratch.walled[1], scratch.walled[2]
+    places, speeds, ties = scratch.floats[0], scratch.floats[1], scratch.floats[2]
     places[0] = ties[0] = law.low
     places[n + 1] = ties[n + 1] = law.high
     speeds[0] = speeds[n + 1] = 0.0

@@ -10,6 +10,7 @@ import numpy as np
 
 from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.laws.closed_contacts import find_clusters
+from crazybilliards.particles.laws.contact_dynamics import bound
 from crazybilliards.particles.laws.spring_correction import springs_ahead
 
 
@@ -63,14 +64,6 @@ def stick(y, v, dt, law, scratch):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _bound(gap, closing, restitution, ahead, dt):  # type: ignore[no-untyped-def]
-    """Least relative velocity after a contact, as ``contact_dynamics.bound``."""
-    if restitution > 0 and gap < dt * closing:
-        return max(restitution * (closing - ahead) - ahead, -gap / dt)
-    return -gap / dt
-
-
-@kernel
 def _ahead(i, y, anchors, inverse, dt, law):  # type: ignore[no-untyped-def]
     """Relative velocity that the spring of rod i, seen from its left, has yet to give it."""
     return springs_ahead(0.0, y[i] - anchors[i], law.pull * inverse[i], law.exponent, -dt / 2)
@@ -81,21 +74,21 @@ def solve(y, v, anchors, dt, law, scratch):  # type: ignore[no-untyped-def]
     """Contact Dynamics: advance ``y`` and ``v`` by ``dt``; return the contacts with an impulse."""
     n = y.size
     inverse = scratch.inverse[1:-1] if law.high < np.inf else scratch.inverse
-    shifted, totals = scratch.floats[0], scratch.floats[1]
+    shifted, totals = scratch.floats[0, :n], scratch.floats[1]
     sums, weights = scratch.floats[2], scratch.floats[3]
     total = 0.0
     shifted[0], totals[0] = v[0], 0.0
     for i in range(1, n):
         ahead = _ahead(i, y, anchors, inverse, dt, law)
         ahead -= _ahead(i - 1, y, anchors, inverse, dt, law)
-        total += _bound(y[i] - y[i - 1], v[i - 1] - v[i], law.restitution, ahead, dt)
+        total += bound(y[i] - y[i - 1], v[i - 1] - v[i], law.restitution, ahead, dt)
         shifted[i], totals[i] = v[i] - total, total
     merged = pool(shifted, shifted, inverse, scratch.integers[0], sums, scratch.due, weights)
     if law.high < np.inf:
         left = _ahead(0, y, anchors, inverse, dt, law)
         right = -_ahead(n - 1, y, anchors, inverse, dt, law)
-        least = _bound(y[0] - law.low, -v[0], law.wall_restitution, left, dt)
-        most = -_bound(law.high - y[n - 1], v[n - 1], law.wall_restitution, right, dt) - total
+        least = bound(y[0] - law.low, -v[0], law.wall_restitution, left, dt)
+        most = -bound(law.high - y[n - 1], v[n - 1], law.wall_restitution, right, dt) - total
         if most < least:  # all rebounds together need more room than there is
             least = most = (least + most) / 2
         for i in range(n):

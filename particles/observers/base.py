@@ -46,52 +46,29 @@ class Observer(ABC):
     ``observe`` of ``simulate`` takes observers by their names or as objects:
     ``observe=["widths", Velocities(bins=801)]``. The constructor takes the parameters, if there
     are any. :meth:`prepare` makes the arrays for the sums.
-
-    Attributes
-    ----------
-    name
-        Its name in ``observe``.
-    gives
-        The variables that it reports.
-    vocabulary
-        ``{name: (meaning, unit)}`` of its variables and coordinates, as far as they are not in
-        ``VOCABULARY`` of ``crazybilliards.model.vocabulary``. Units consist of R, M and t_0.
-    along
-        The coordinates that it adds to the result, e.g. ``("velocity_bin",)``.
-    least_rods
-        The size of the shortest chain that it can measure.
-    single_collisions
-        Whether it needs every single collision, not only snapshots.
-    ensemble
-        Whether it can be averaged over replicas at equal times.
-    shares_time
-        Whether it has the times of all snapshots if another observer has them too.
-    meets_walls
-        Whether it needs every impulse on a wall, and a chain in a box.
-    reads_chain
-        Whether it reads more of the chain than the places of its anchors. It then refuses a chain
-        with a new parameter. One that only averages ``y`` and ``v`` says False.
-    knows
-        New parameters with which it is right all the same; see *Extend the package*.
     """
 
-    name: ClassVar[str]
-    gives: ClassVar[tuple[str, ...]]
+    name: ClassVar[str]  #: its name in ``observe``
+    gives: ClassVar[tuple[str, ...]]  #: the variables that it reports
+    #: ``{name: (meaning, unit)}`` of its variables and coordinates, as far as they are not in
+    #: ``VOCABULARY`` of ``crazybilliards.model.vocabulary``. Units consist of R, M and t_0.
     vocabulary: ClassVar[Mapping[str, tuple[str, str]]] = {}
-    along: ClassVar[tuple[str, ...]] = ()
-    least_rods: ClassVar[int] = 1
-    single_collisions: ClassVar[bool] = False
-    ensemble: ClassVar[bool] = True
-    shares_time: ClassVar[bool] = False
-    meets_walls: ClassVar[bool] = False
+    along: ClassVar[tuple[str, ...]] = ()  #: the coordinates that it adds, e.g. ``("wave",)``
+    least_rods: ClassVar[int] = 1  #: the size of the shortest chain that it can measure
+    single_collisions: ClassVar[bool] = False  #: it needs every collision, not only snapshots
+    ensemble: ClassVar[bool] = True  #: it can be averaged over replicas at equal times
+    shares_time: ClassVar[bool] = False  #: beside one like it, it has the times of all snapshots
+    meets_walls: ClassVar[bool] = False  #: it needs every impulse on a wall, and a chain in a box
+    #: It reads more of the chain than the places of its anchors, and refuses a chain with a new
+    #: parameter. One that only averages ``y`` and ``v`` says False.
     reads_chain: ClassVar[bool] = True
+    #: New parameters with which it is right all the same; see *Extend the package*.
     knows: ClassVar[frozenset[str]] = frozenset()
 
     def __str__(self) -> str:
         """Return the name and, if there are any, the parameters."""
-        parameters = ", ".join(
-            f"{name}={value!r}" for name, value in vars(self).items() if value is not None
-        )
+        given = {name: value for name, value in vars(self).items() if value is not None}
+        parameters = ", ".join(f"{name}={value!r}" for name, value in given.items())
         return f"{self.name}({parameters})" if parameters else self.name
 
     def interval(self, chain: Chain) -> float:
@@ -113,11 +90,7 @@ class Observer(ABC):
         return observer
 
     def state(self) -> dict[str, Any]:
-        """Return the attributes that a checkpoint keeps: all but constants.
-
-        They must be arrays, numbers or texts. This includes a few small ones that never change, so
-        that none can be forgotten.
-        """
+        """Return the attributes that a checkpoint keeps: all arrays, numbers and texts."""
         return {
             name: value
             for name, value in vars(self).items()
@@ -156,10 +129,9 @@ class Averaged(Observer):
     """An observer that keeps ``sums``, shape (blocks, ...), and reports averages of them.
 
     :meth:`shape` says what a block has. An observer that keeps anything else extends
-    :meth:`prepare` and, if that is large, :meth:`memory`.
-
-    Joining puts the blocks of all replicas one after the other. In an ensemble a block is a time.
-    The joined shape is then (groups, times, ...), and averages are over groups.
+    :meth:`prepare` and, if that is large, :meth:`memory`. Joining puts the blocks of all replicas
+    one after the other. In an ensemble a block is a time, the joined shape is (groups, times, ...),
+    and averages are over groups.
     """
 
     run: Run

@@ -39,10 +39,9 @@ class Checkpoint:
     def __init__(self, path: Path, run: Run, interval: float) -> None:
         self.path, self.interval = path, interval
         self.saved = time.monotonic()
-        identity = run.chain.parameters() | run.provenance | {"average": run.average}
-        del identity["schedule"]
-        for name in ("duration", "warmup", "time_step", "every"):
-            identity[name] = getattr(run, name)
+        own = ("average", "duration", "warmup", "time_step", "every")
+        identity = run.chain.parameters() | run.provenance
+        identity |= {name: getattr(run, name) for name in own} | {"schedule": None}
         identity |= {"version": version("crazybilliards"), "source code": _SOURCE}
         self.identity = json.loads(json.dumps(identity))  # as it will be read back
 

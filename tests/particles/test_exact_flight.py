@@ -13,7 +13,6 @@ from crazybilliards.model import Chain
 from crazybilliards.particles import given_start, simulate
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.exact_flight import make_propagator
-from crazybilliards.particles.observers import Raw
 
 CRITICAL = 2 * math.sqrt(4 * math.pi / 3)
 
@@ -67,40 +66,6 @@ def test_two_steps_are_one_of_their_sum(one, other, damping, stiffness):
     assert np.abs(f @ e - both).max() <= 1e-10 * scale.max()
     found = f @ sigma @ f.T + rho
     assert np.abs(found - noise).max() <= 1e-9 * np.abs(noise).max()
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize(
-    ("stiffness", "damping", "step"),
-    [(0.0, 0.0, 3.0), (0.0, 1.0, 20.0), (1.0, 0.1, 3.0), (1.0, CRITICAL, 3.0), (1.0, 10.0, 0.1)],
-)
-def test_rods_forget_as_one_oscillator(stiffness, damping, step):
-    """Sums over the chain do not know who is who: those of x and of v, and of their squares.
-
-    What a step adds to them beyond E is the noise, whose moments are known.
-    """
-    chain = Chain(size=6, damping=damping, stiffness=stiffness)
-    copies, steps, generator = 40, 50, np.random.default_rng(7)
-    y = np.sort(generator.normal(1.0, 2.0, (copies, chain.size)), axis=1)
-    v = generator.normal(0.5, 0.7, (copies, chain.size))
-    start = given_start(chain, chain.physical(y), v, replicas=copies)
-    times = {"duration": steps * step, "every": step, "time_step": step}
-    how = {"average": "ensemble", "observe": Raw(), "replicas": copies, "seed": 1}
-    run = simulate(chain, start=start, progress=False, **how, **times)
-    rods = np.stack([run.position.values - chain.anchors, run.velocity.values])
-    assert (np.diff(rods[0]) > -1e-9 * np.abs(rods[0]).max()).all()
-    e, sigma = moves(chain, step), heats(chain, step)
-    before, after = rods[:, :, :-1], rods[:, :, 1:]
-    moved = np.tensordot(e, before, 1)
-    left = (after - moved).mean(axis=-1).reshape(2, -1)
-    of_mean, number = sigma / chain.size, copies * steps
-    variance = np.diag(of_mean)
-    assert (np.abs(left.mean(1)) < 5 * np.sqrt(variance / number)).all()
-    error = np.sqrt((np.outer(variance, variance) + of_mean**2) / number)
-    assert (np.abs(left @ left.T / number - of_mean) < 5 * error).all()
-    for added, known, noise in zip(after**2 - moved**2, moved, np.diag(sigma), strict=True):
-        error = np.sqrt((4 * noise * known**2 + 2 * noise**2).sum())
-        assert abs(added.sum() - noise * added.size) < 5 * error
 
 
 @pytest.mark.parametrize(
