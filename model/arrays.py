@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +23,13 @@ def check_numbers(name: str, values: object) -> Array:
     except (TypeError, ValueError, OverflowError):
         pass
     raise ValueError(f"{name} must be numbers, got {shown(values)}")
+
+
+def merge_pairs(blocks: NDArray[Any]) -> None:
+    """Add up neighbours along the first axis in place; the second half is then free, and 0."""
+    half = len(blocks) // 2
+    blocks[:half] = blocks[0::2] + blocks[1::2]
+    blocks[half:] = 0
 
 
 def middle_tenth(places: int) -> slice:

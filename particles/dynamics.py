@@ -10,16 +10,9 @@ from numpy.typing import NDArray
 
 from crazybilliards.model import Chain
 from crazybilliards.model.parameters import WALLS_AND_MASSES
+from crazybilliards.particles.laws import law as laws
 from crazybilliards.particles.laws.closed_contacts import CLOSED_KICK, CRITICAL_RESTITUTION
 from crazybilliards.particles.laws.exact_flight import Propagator, make_propagator
-from crazybilliards.particles.laws.law import (
-    TURN,
-    Law,
-    Method,
-    choose_operator,
-    inverse_masses,
-    make_law,
-)
 from crazybilliards.particles.scales import spring_rate
 
 # In velocity kicks of one step: rods that separate more slowly move as one. Below the critical
@@ -56,7 +49,7 @@ class Dynamics(NamedTuple):
     anchors: NDArray[np.float64]  # reduced, (L,)
     step: Step
     second: Step  # of the rods 2, 4, ..., whose mass may be another one
-    law: Law
+    law: laws.Law
     propagator: Propagator  # of a step, if the law is EXACT
     fastest: float  # with a faster rod the chain has diverged
     inverse: NDArray[np.float64]  # inverse masses for ``make_scratch``
@@ -67,7 +60,7 @@ def make_dynamics(
     time_step: float,
     *,
     speed: float,
-    method: Method = "event-driven",
+    method: laws.Method = "event-driven",
     stepper: Stepper = "splitting",
     merging: float | None = None,
     counted: bool = False,
@@ -81,14 +74,14 @@ def make_dynamics(
     second = chain.replace(mass=chain.mass * chain.mass_ratio, mass_ratio=1.0)
     one, other = (make_step(sort, time_step, stepper, method) for sort in (chain, second))
     halves = stepper == "splitting"
-    operator = choose_operator(chain, method, counted=counted, struck=struck, halves=halves)
-    if operator == TURN:  # which has the springs in its flight
+    operator = laws.choose_operator(chain, method, counted=counted, struck=struck, halves=halves)
+    if operator == laws.TURN:  # which has the springs in its flight
         one, other = one._replace(kick=0.0), other._replace(kick=0.0)
     merging = default_merging(chain) if merging is None else merging
-    law = make_law(chain, time_step, operator, merging, speed, halves=halves)
+    law = laws.make_law(chain, time_step, operator, merging, speed, halves=halves)
     speed *= math.sqrt(max(chain.mass_ratio, 1 / chain.mass_ratio))  # a heavy rod hits a light one
     fastest = _DIVERGED * speed if speed > 0 else math.inf
-    propagator, inverse = make_propagator(chain, time_step), inverse_masses(chain)
+    propagator, inverse = make_propagator(chain, time_step), laws.inverse_masses(chain)
     return Dynamics(chain.reduced_anchors, one, other, law, propagator, fastest, inverse)
 
 
@@ -103,7 +96,7 @@ def rods_stick(chain: Chain) -> bool:
 
 
 def make_step(
-    chain: Chain, time_step: float, stepper: Stepper, method: Method = "event-driven"
+    chain: Chain, time_step: float, stepper: Stepper, method: laws.Method = "event-driven"
 ) -> Step:
     """Return the numbers of one step of the chain under the named scheme."""
     m, gamma = chain.mass, chain.damping

@@ -217,11 +217,6 @@ class Run:
         return min(self.replicas, _GROUPS) if self.ensemble else self.replicas
 
     @property
-    def copies(self) -> int:
-        """Number of replicas in the largest group."""
-        return -(-self.replicas // self.groups)
-
-    @property
     def operator(self) -> int:
         """The operator that lets the rods of this run collide."""
         halves = self.stepper == "splitting"

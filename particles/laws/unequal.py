@@ -15,15 +15,9 @@ that flies in rebounds with a restitution of its own (``row_restitution``).
 import numpy as np
 
 from crazybilliards.model.kernels import kernel
+from crazybilliards.particles.laws import impacts as rows
 from crazybilliards.particles.laws.avalanche import record_collision
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
-from crazybilliards.particles.laws.impacts import (
-    ENERGY_AFTER,
-    ENERGY_BEFORE,
-    MOMENTUM_AFTER,
-    MOMENTUM_BEFORE,
-    record_speed,
-)
 from crazybilliards.particles.laws.spring_correction import springs_ahead
 from crazybilliards.particles.laws.tournament import INDEX
 
@@ -45,9 +39,8 @@ def collide(contact, a, b, now, y, v, anchors, dt, law, scratch, tally):  # type
     if law.pull > 0.0 and a == contact and b == neighbour and not alike:
         place, since = y[contact] + v_left * now, now - dt / 2
         ahead = springs_ahead(place - anchors[contact], 0.0, law.pull * w, law.exponent, since)
-        ahead += springs_ahead(
-            0.0, place - anchors[neighbour], law.pull * w_right, law.exponent, since
-        )
+        right = law.pull * w_right
+        ahead += springs_ahead(0.0, place - anchors[neighbour], right, law.exponent, since)
     wall = single[contact] == 0.0 or single[neighbour] == 0.0
     at_wall = w * w_right == 0.0
     e = law.wall_restitution if wall else law.row_restitution if at_wall else law.restitution
@@ -102,7 +95,7 @@ def _record(contact, a, b, true, change, v_left, v_right, scratch, tally):  # ty
         own = np.int64(contact - before)
         record_collision(own, np.int64(a - before), np.int64(b - before), v_left, v_right, tally)
         if tally.speeds.counts.size > 0:
-            record_speed(own, closing, tally.speeds)
+            rows.record_speed(own, closing, tally.speeds)
     if tally.impacts.size > 0:
         _record_impact(contact, a, b, mass, closing, separating, before, scratch, tally.impacts)
 
@@ -126,12 +119,12 @@ def _record_impact(contact, a, b, mass, closing, separating, before, scratch, im
             share = 1.0 - beyond * joint[contact + _1]
         own = other - np.int64(before)
         if 0 <= own < impacts.shape[1]:
-            impacts[MOMENTUM_BEFORE, own] += share * mass * closing
-            impacts[MOMENTUM_AFTER, own] += share * mass * separating
+            impacts[rows.MOMENTUM_BEFORE, own] += share * mass * closing
+            impacts[rows.MOMENTUM_AFTER, own] += share * mass * separating
     if single[contact] > 0.0 and single[contact + _1] > 0.0:
         own = np.int64(contact - before)
-        impacts[ENERGY_BEFORE, own] += mass * closing * closing / 2
-        impacts[ENERGY_AFTER, own] += mass * separating * separating / 2
+        impacts[rows.ENERGY_BEFORE, own] += mass * closing * closing / 2
+        impacts[rows.ENERGY_AFTER, own] += mass * separating * separating / 2
 
 
 @kernel

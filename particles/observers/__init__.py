@@ -42,19 +42,8 @@ __all__ = [
 OBSERVERS: dict[str, type[Observer]] = {
     observer.name: observer
     for observer in (
-        Widths,
-        Density,
-        Velocities,
-        Energy,
-        Covariances,
-        Modes,
-        TimeCorrelations,
-        Collisions,
-        Impacts,
-        Avalanches,
-        TriggeredCollisions,
-        Walls,
-        Raw,
+        *(Widths, Density, Velocities, Energy, Covariances, Modes, TimeCorrelations, Collisions),
+        *(Impacts, Avalanches, TriggeredCollisions, Walls, Raw),
     )
 }
 

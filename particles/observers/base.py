@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model.arrays import Array, merge_pairs
 from crazybilliards.particles.laws.avalanche import Tally
 from crazybilliards.particles.observers.error_bars import jackknife
 from crazybilliards.particles.run import Run
@@ -173,10 +173,3 @@ class Averaged(Observer):
             variables[name] = (dimensions, value)
             variables[f"{name}_error"] = (dimensions, error)
         return variables
-
-
-def merge_pairs(blocks: NDArray[Any]) -> None:
-    """Add up neighbours along the first axis in place; the second half is then free, and 0."""
-    half = len(blocks) // 2
-    blocks[:half] = blocks[0::2] + blocks[1::2]
-    blocks[half:] = 0

@@ -8,15 +8,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from crazybilliards.model.arrays import merge_pairs
 from crazybilliards.model.parameters import WALLS_AND_MASSES
-from crazybilliards.particles.observers.base import (
-    Array,
-    Integers,
-    Observer,
-    Snapshots,
-    Variables,
-    merge_pairs,
-)
+from crazybilliards.particles.observers.base import Array, Integers, Observer, Snapshots, Variables
 from crazybilliards.particles.observers.error_bars import jackknife
 from crazybilliards.particles.run import Run
 

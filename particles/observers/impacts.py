@@ -11,14 +11,7 @@ import numpy as np
 from crazybilliards.model.checks import check_integer
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws.avalanche import Tally
-from crazybilliards.particles.laws.impacts import (
-    ENERGY_AFTER,
-    ENERGY_BEFORE,
-    MOMENTUM_AFTER,
-    MOMENTUM_BEFORE,
-    Speeds,
-    make_impacts,
-)
+from crazybilliards.particles.laws.impacts import Speeds, make_impacts
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.observers.velocities import FINEST, LAST, MOST_BINS
 from crazybilliards.particles.run import Run
@@ -107,13 +100,14 @@ class Impacts(Averaged):
         per_time = self.run.chain.mass / self.run.every
 
         def rebound(sums: Array) -> Array:
-            merged = (sums[MOMENTUM_AFTER] == 0) & (sums[MOMENTUM_BEFORE] > 0)
-            return np.where(merged, 0.0, _temperature(sums, MOMENTUM_AFTER, ENERGY_AFTER))
+            merged = (sums[2] == 0) & (sums[0] > 0)
+            return np.where(merged, 0.0, _temperature(*sums[2:]))
 
+        # The rows of ``laws/impacts.py``: momentum and energy before, momentum and energy after.
         quantities = {
-            "contact_force": lambda sums: per_time * (sums[MOMENTUM_BEFORE] + sums[MOMENTUM_AFTER]),
-            "contact_loss": lambda sums: per_time * (sums[ENERGY_BEFORE] - sums[ENERGY_AFTER]),
-            "contact_temperature": lambda sums: _temperature(sums, MOMENTUM_BEFORE, ENERGY_BEFORE),
+            "contact_force": lambda sums: per_time * (sums[0] + sums[2]),
+            "contact_loss": lambda sums: per_time * (sums[1] - sums[3]),
+            "contact_temperature": lambda sums: _temperature(*sums[:2]),
             "rebound_temperature": rebound,
         }
         collisions = self.numbers.sum(axis=1, keepdims=True)
@@ -127,8 +121,8 @@ class Impacts(Averaged):
         return {"impact_speed": (self.edges[1:] + self.edges[:-1]) / 2}
 
 
-def _temperature(sums: Array, momentum: int, energy: int) -> Array:
+def _temperature(momentum: Array, energy: Array) -> Array:
     """Return (pi/16) (<w^2>/<w>)^2 = (pi/4) (energy/momentum)^2, NaN without any collision."""
-    unknown = np.full_like(sums[momentum], np.nan)
-    ratio = np.divide(sums[energy], sums[momentum], out=unknown, where=sums[momentum] > 0)
+    unknown = np.full_like(momentum, np.nan)
+    ratio = np.divide(energy, momentum, out=unknown, where=momentum > 0)
     return np.asarray(np.pi / 4 * ratio**2)

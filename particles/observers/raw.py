@@ -33,7 +33,7 @@ class Raw(Observer):
         self.y, self.v = np.full((2, copies, run.snapshots, run.chosen.size), np.nan)
 
     def memory(self, run: Run) -> float:
-        return 16.0 * run.chosen.size * run.snapshots * run.copies
+        return 16.0 * run.chosen.size * run.snapshots * -(-run.replicas // run.groups)
 
     def observe(self, snapshots: Snapshots) -> None:
         place = slice(snapshots.first, snapshots.first + len(snapshots.y))

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crazybilliards.model.arrays import Array
+from crazybilliards.model.arrays import Array, merge_pairs
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import STATE, make_noise
-from crazybilliards.particles.observers.base import Snapshots, merge_pairs
+from crazybilliards.particles.observers.base import Snapshots
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.stepping import advance, record
 
