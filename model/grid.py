@@ -71,10 +71,9 @@ def position_grid(chain: Chain, reach: float | None = None) -> NDArray[np.float6
 
 
 def _half_width(chain: Chain, reach: float | None) -> float:
-    # The two running averages, of a rod length each, spread a point by 2R to either side.
-    margin = 4 * chain.radius
     half = float(chain.anchors[-1]) + (thermal_reach(chain) if reach is None else reach)
-    return min(half, chain.box / 2 or math.inf) + margin
+    # The two running averages, of a rod length each, spread a point by 2R to either side.
+    return min(half, chain.box / 2 or math.inf) + 4 * chain.radius
 
 
 def require_even(x: NDArray[np.float64], who: str) -> float:

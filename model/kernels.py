@@ -74,8 +74,7 @@ def kernel(
     disk = getattr(dispatcher, "_cache", None)
     index: Any = getattr(disk, "_cache_file", None)
     if hasattr(index, "_source_stamp"):
-        rooms = room_fingerprint("model", "particles", "kinetic")
-        index._source_stamp = (index._source_stamp, rooms)
+        index._source_stamp = index._source_stamp, room_fingerprint("model", "particles", "kinetic")
         _let_it_fail(disk)
     return dispatcher
 

@@ -108,8 +108,7 @@ def make_step(
         return Step(time_step, decay, noise, decay, noise, full_kick, exponent, False, 1.0, 1.0)
     inner, outer = (_ornstein_uhlenbeck(chain, duration) for duration in (time_step, time_step / 2))
     # Contact Dynamics has no stronger noise for closed contacts, as in the paper.
-    sticking = rods_stick(chain) and method == "event-driven"
-    strength = CLOSED_KICK if sticking else 1.0
+    strength = CLOSED_KICK if rods_stick(chain) and method == "event-driven" else 1.0
     # The half kick before a snapshot is left as it is. The one after it is so much stronger that
     # both together have strength^2 times the variance, which is 1 + decay^2 times that of one.
     outer_strength = math.sqrt(strength**2 + outer[0] ** 2 * (strength**2 - 1))
@@ -119,14 +118,13 @@ def make_step(
 def longest_step(chain: Chain, stepper: Stepper) -> float:
     """Return the limit of stability: with longer steps the energy of a rod grows without bound.
 
-    It is 2/w0 for the splitting and 4/(g + sqrt(g^2 + 4 w0^2)), g = gamma/m, for euler. It is
-    infinite for a quadratic spring without damping, which has no rate. Such a run may diverge.
+    It is 2/w0 for the splitting and 4/(g + sqrt(g^2 + 4 w0^2)), g = gamma/m, for euler. It is not
+    known, inf, for a quadratic spring without damping, which has no rate.
     """
     if chain.spring == "quadratic" and math.isinf(chain.temperature):
         return math.inf
-    rate = spring_rate(chain)
     damping = chain.damping / chain.mass if stepper == "euler" else 0.0
-    slowest = damping + math.hypot(damping, 2 * rate)
+    slowest = damping + math.hypot(damping, 2 * spring_rate(chain))
     return 4 / slowest if slowest > 0 else math.inf
 
 

@@ -40,8 +40,7 @@ def spring_rate(chain: Chain) -> float:
             "time_step: a quadratic spring without damping has no typical displacement to choose "
             "a step from; give time_step"
         )
-    displacement = chain.reach(10 * chain.temperature)
-    return math.sqrt(2 * chain.stiffness * displacement / lightest)
+    return math.sqrt(2 * chain.stiffness * chain.reach(10 * chain.temperature) / lightest)
 
 
 def centre_width(chain: Chain) -> float:

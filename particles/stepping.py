@@ -120,21 +120,17 @@ def _step(y, v, noise, dynamics, scratch, tally, steps):  # type: ignore[no-unty
         find_clusters(y, scratch.clusters, dynamics.law.low, dynamics.law.high)
     collisions, row, rows = 0, 0, 0
     # The second half kick of a step is merged into the first one of the next.
-    part = FIRST
     due = steps + 1 if step.symmetric else steps
     for taken in range(due):
         if row == rows:
             row, rows = 0, draw_kicks(noise, scratch.kicks, size, due - taken)
-        if taken == steps:
-            part = LAST
+        part = FIRST if taken == 0 or not step.symmetric else LAST if taken == steps else WHOLE
         kicks = scratch.kicks[row * size : (row + 1) * size]
         number = take_step(y, v, kicks, part, dynamics, scratch, tally)
         if number < 0:
             return -1
         row += 1
         collisions += number
-        if step.symmetric:
-            part = WHOLE
     return collisions
 
 

@@ -66,8 +66,7 @@ def make_tally(size: int, *, contacts: bool) -> Tally:
     """Return an empty tally for ``size`` rods, without waves and impacts."""
     counted = np.zeros(max(size - 1, 0) if contacts else 0, dtype=np.int64)
     speeds = Speeds(np.zeros(0), np.zeros((0, 0), dtype=np.int64))
-    nowhere = np.zeros((2, 0))
-    return Tally(counted, make_waves(0), make_waves(0), make_impacts(0), speeds, nowhere)
+    return Tally(counted, make_waves(0), make_waves(0), make_impacts(0), speeds, np.zeros((2, 0)))
 
 
 @kernel

@@ -62,8 +62,7 @@ def _fastest(begin, end, due, v):  # type: ignore[no-untyped-def]
     """Return the contact of a row that closes fastest among those due at time 0; ``end``: none."""
     fastest, speed = INDEX(end), 0.0
     for contact in range(begin, end):
-        closing = v[contact] - v[contact + _1]
-        closing = closing if due[contact] == 0.0 else 0.0
+        closing = v[contact] - v[contact + _1] if due[contact] == 0.0 else 0.0
         fastest = INDEX(contact) if closing > speed else fastest
         speed = closing if closing > speed else speed
     return fastest

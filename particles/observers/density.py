@@ -82,22 +82,20 @@ class Density(Averaged):
 
     def report(self, counts: Integers) -> Variables:
         if self.outside:
-            share = self.outside / counts.sum()
             warn_user(
-                f"density: {share:.3g} rods per snapshot lay outside the grid and are missing; "
-                "observe=cb.observers.Density(reach=...) makes the grid wider"
+                f"density: {self.outside / counts.sum():.3g} rods per snapshot lay outside the "
+                "grid and are missing; observe=cb.observers.Density(reach=...) makes the grid wider"
             )
         spacing = self.spacing
         variables = self.averages({"density": lambda average: average / spacing}, counts, "x")
+        dimensions, _ = variables["density"]
         if self.run.ensemble:
             # In an interrupted run a group has no density at times that it did not reach: NaN.
             known = np.where(counts > 0, counts, np.nan)[..., np.newaxis]
             means = self.sums[:, : counts.shape[-1]] / (known * spacing)
-            variables["density_block"] = (("block", "time", "x"), means)
         else:
-            complete = counts == counts.max()
-            means = self.sums[complete] / (counts.max() * spacing)
-            variables["density_block"] = (("block", "x"), means)
+            means = self.sums[counts == counts.max()] / (counts.max() * spacing)
+        variables["density_block"] = (("block", *dimensions), means)
         variables["outside"] = ((), np.float64(self.outside / counts.sum()))
         return variables
 

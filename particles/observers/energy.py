@@ -81,8 +81,7 @@ class Energy(Observer):
         first = np.arange(self.counts.shape[1]) * self.together
         # run.times would take too much memory in a long run.
         together = self.counts.sum(axis=0) / np.maximum((self.counts > 0).sum(axis=0), 1)
-        times = self.run.time(first + (together - 1) / 2)
-        return {"time": times[self._reached()]}
+        return {"time": self.run.time(first + (together - 1) / 2)[self._reached()]}
 
     def _reached(self) -> NDArray[np.bool_]:
         """Return which times are reported."""

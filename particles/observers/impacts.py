@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Self
 
@@ -72,8 +71,7 @@ class Impacts(Averaged):
         return 4, run.chain.size - 1
 
     def memory(self, run: Run) -> float:
-        own = math.prod(self.shape(run)) + self.bins * (run.chain.size - 1)
-        return super().memory(run) + 8.0 * own
+        return super().memory(run) + 8.0 * (4 + self.bins) * (run.chain.size - 1)
 
     def prepare(self, run: Run, copies: int) -> None:
         super().prepare(run, copies)

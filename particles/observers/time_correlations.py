@@ -185,9 +185,8 @@ class TimeCorrelations(Averaged):
                 self.before[...] = now[:, :1]
             _add_pairs(sums, np.repeat(self.before, new, axis=1), now, 0, 0)
             return
-        taken = -(-snapshots.first // self.spacing)
         known = np.concatenate([self.before, now], axis=1)
-        _add_pairs(sums, known, now, taken, self.last)
+        _add_pairs(sums, known, now, -(-snapshots.first // self.spacing), self.last)
         self.before[...] = known[:, new:]
 
     def _means(self, average: Array, rows: slice) -> Array:

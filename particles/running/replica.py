@@ -26,8 +26,7 @@ NEVER = 2**62
 
 def make_replicas(run: Run) -> list[Replica]:
     """Distribute the replicas of a run over groups, each with observers of its own."""
-    groups = np.array_split(np.arange(run.replicas), run.groups)
-    return [Replica(run, members) for members in groups]
+    return [Replica(run, each) for each in np.array_split(np.arange(run.replicas), run.groups)]
 
 
 class Replica:
