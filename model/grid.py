@@ -1,10 +1,9 @@
 """The grid of positions that simulations and theories share, and how points are put on it.
 
-Nodes are whole multiples of a spacing h = 2R/n with n **odd**. Then a bin of width h centred on
-a node, convolved with a rod of length 2R centred on a point, is exactly the mean of n hat
-functions centred on nodes. A density is kept in hat weights: each point is shared linearly
-between its two neighbouring nodes. The fraction of a bin that rods cover then follows from the
-weights without any error, in O(1) per bin.
+Nodes are whole multiples of a spacing h = 2R/n with n **odd**. Then a bin of width h on a node,
+convolved with a rod of length 2R on a point, is exactly the mean of n hat functions on nodes. A
+density is kept in hat weights: each point is shared linearly between its two neighbouring nodes.
+The fraction of a bin that rods cover then follows without any error, in O(1) per bin.
 """
 
 from __future__ import annotations
@@ -97,10 +96,9 @@ def require_all_held(held: ArrayLike, rods: ArrayLike, who: str, missed: float =
 
 @kernel
 def deposit(points, first, spacing, weights):  # type: ignore[no-untyped-def]
-    """Add each point's hat weights to ``weights`` in place; return how many points lay outside.
+    """Add the hat weights of points (1-d) in place; return how many lay outside, and are not added.
 
-    A point between two nodes gives each the share (1 - distance/spacing). ``points`` is a 1-d
-    float array; the nodes are ``first + j * spacing``. Points outside the nodes are not added.
+    A point between two nodes, ``first + j * spacing``, gives each the share 1 - distance/spacing.
     """
     outside = 0
     last = weights.size - 1

@@ -15,8 +15,7 @@ from crazybilliards.model.checks import check_choice, check_integer, check_real
 
 Spring = Literal["linear", "quadratic"]
 
-# The parameters that everything knows. A new one is refused by every operator of collisions, by the
-# steps, the scales, the starts, every observer and every theory, unless its own ``knows`` names it.
+# Whatever reads a chain refuses any other parameter, unless its own ``knows`` names it.
 KNOWN = frozenset(
     {"size", "restitution", "amplitude", "damping", "stiffness", "gap", "radius", "mass", "spring"}
 )

@@ -149,15 +149,13 @@ def result(
     method
         How it was computed, for the provenance: anything JSON can hold.
     coordinates
-        Values along the dimensions x, time, mode and so on, if the result has them; the particles
-        and contacts get their numbers.
+        Values along the dimensions, except of the particles and contacts, which get their numbers.
     status, end_time
         ``completed``, ``diverged`` or ``interrupted``, and the time reached.
     residual
         How well a theory's equations are satisfied, as its function defines.
     particles
-        The particles, from 1, that variables over ``particle`` and ``contact`` are given for, a
-        contact having the number of its left particle; None: all.
+        The particles, from 1, and contacts by their left particles, of the variables; None: all.
     vocabulary
         Meanings and units of names that are not in ``VOCABULARY``, such as an observer's own.
 

@@ -48,8 +48,7 @@ def centre_width(chain: Chain) -> float:
 
     Heating by the noise balances damping and collisions, whose cooling grows as the chain cools
     and contracts: 1/w^2 = 1 + q with q = c (1 - e^2) n sqrt(k m)/gamma, n the number of rods that
-    lie within a few thermal lengths. c = 0.1 + 0.14 e^4 fits simulations from L = 10 to 1000. For
-    e >= 1, where collisions do not cool, w = 1.
+    lie within a few thermal lengths. c = 0.1 + 0.14 e^4 fits simulations from L = 10 to 1000.
 
     In a box the collisions of uncorrelated rods in a free length l are at least as frequent as
     these: w^2 - 1 + (1 - e^2) w^3 W m L/(sqrt(pi) gamma l) = 0.
@@ -147,9 +146,7 @@ def _settling_time(chain: Chain, mass: float) -> float:
 def correlation_time(chain: Chain) -> float:
     """Longest integral of an autocorrelation function from 0 on [t_0]; 0 if nothing relaxes.
 
-    It is m/gamma for energies under weak damping, and gamma/k' for displacements under strong
-    damping. With the critical damping, displacements are correlated for twice
-    :func:`relaxation_time`.
+    It is m/gamma for energies under weak damping, and gamma/k' for displacements under strong one.
     """
     if chain.damping == 0:
         return 0.0
@@ -179,8 +176,7 @@ def first_decay(chain: Chain) -> float:
     """Estimate the time in which a rod's velocity decays first [t_0]: to 0.1 at e = 1, 0.5 below.
 
     It is the shortest of m/gamma, 1/w0, and the distance to the next rod over the velocity width,
-    in the middle of a cloud of the width that a free rod has, or on the lattice of the gap.
-    Infinite without damping.
+    in the middle of a cloud as wide as that of a free rod, or on the lattice; inf without damping.
     """
     if chain.damping == 0:
         return math.inf

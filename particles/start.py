@@ -32,8 +32,6 @@ def given_start(
 
     Parameters
     ----------
-    chain
-        The chain.
     position
         Rod centres x_i [R], shape (L,) for all replicas or (replicas, L), in order from the left.
     velocity

@@ -1,9 +1,8 @@
 """Avalanches: waves of momentum that run along the chain from collision to collision.
 
 A wave has an origin, the rod i that hit its right neighbour, and a front, which is i + 1 at first.
-docs/physics/avalanches.md has the rules of the two counts: **triggered**, the paper's (section
-``seq:e_0``, N_c = front - origin - 1), and **pushes**, our extension (N_c = front - origin), in
-which a push runs through a cluster to its far end.
+docs/physics/avalanches.md has the rules of the two counts: **triggered**, the paper's, with
+N_c = front - origin - 1, and **pushes**, in which a push runs through a cluster to its far end.
 
 Waves with the same front share their future. They are kept in a linked list that moves as a whole.
 Each collision starts at most one wave, and each wave ends once, so one costs O(1) on average:

@@ -20,8 +20,7 @@ drift, with the mean velocity of its members and as many masses. Its state is st
 outermost members. docs/physics/collisions.md has the consequences.
 
 **Positions at the beginning of the step.** y holds the position that a point with its present
-velocity would have had at t = 0. A collision at t changes y by (v_before - v_after) t, and no point
-has to be moved before the end of the step.
+velocity would have had at t = 0. A collision at t changes y by (v_before - v_after) t.
 
 With a gap the velocities of two rods that meet, but not of clusters, are corrected for what their
 springs have not given them yet (``spring_correction.py``). Unequal masses and walls have a

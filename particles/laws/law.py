@@ -45,8 +45,7 @@ NAMES = (
 
 ENDLESS = 2**62  # collisions
 
-# Parameters beside ``KNOWN`` with which an operator is right, because it reads them or does not
-# depend on them: {EVENTS: {"my_own"}}.
+# Parameters beside ``KNOWN`` with which an operator is right: {EVENTS: {"my_own"}}.
 knows: dict[int, Set[str]] = {
     **dict.fromkeys((ISOTONIC, EVENTS, CONTACTS), WALLS_AND_MASSES),
     **dict.fromkeys((EXACT, TURN), WALLS_AND_MASSES - {"mass_ratio"}),

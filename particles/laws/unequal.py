@@ -152,9 +152,8 @@ def strengthen(kicks, y, strength, law, scratch):  # type: ignore[no-untyped-def
 def row_restitution(e: float, e_wall: float) -> float:
     """Return the restitution of a rod that hits one at rest at a wall.
 
-    The two collide with e, the other one meets the wall with e_wall, and so on until they separate:
-    e e_wall where one of the two is 1, and 0 if the wall takes all. Of other pairs the rod at the
-    wall keeps a small velocity, which is left out.
+    The two collide with e, the other one meets the wall with e_wall, and so on until they separate.
+    Where neither is 1 the rod at the wall keeps a small velocity, which is left out.
     """
     rod, other = 1.0, 0.0  # velocities towards the wall
     while rod - other > 1e-9:

@@ -116,8 +116,8 @@ class Observer(ABC):
     def report(self, counts: Integers) -> Variables:
         """Return the variables measured.
 
-        ``counts`` is the number of snapshots in every block, shape (blocks of all replicas,), or
-        in an ensemble at every time, shape (groups, times).
+        ``counts``: the snapshots in every block, shape (blocks of all replicas,), or in an ensemble
+        at every time, shape (groups, times).
         """
 
     def coordinates(self) -> dict[str, Array]:

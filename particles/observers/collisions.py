@@ -44,10 +44,10 @@ def checked_rate(run: Run, name: str, e: float, variables: Variables) -> Variabl
     """Make a rate at restitution e infinite if it is; warn if slow collisions are many.
 
     Two noisy rods that meet at a speed v meet again at u v with the density
-    (3/2 pi) u^(3/2)/(1 + u^3) of u at e = 1 (H. P. McKean, J. Math. Kyoto Univ. 2, 227, 1963), and
-    of u/e otherwise. Slow collisions then have speeds of the density v^(-1 - s) with
-    e^s = 2 sin(pi (2 s + 5)/6), and -2 < s < 0. Those below the threshold of merging, a part r of
-    a typical speed, are the share r^(-s) of all.
+    (3/2 pi) u^(3/2)/(1 + u^3) of u/e (H. P. McKean, J. Math. Kyoto Univ. 2, 227, 1963). Slow
+    collisions then have speeds of the density v^(-1 - s) with e^s = 2 sin(pi (2 s + 5)/6), and
+    -2 < s < 0. Those below the threshold of merging, a part r of a typical speed, are the share
+    r^(-s) of all.
     """
     chain = run.chain
     if e >= 1 or chain.amplitude == 0:

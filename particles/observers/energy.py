@@ -23,10 +23,10 @@ class Energy(Observer):
     They are the sums over the rods of m v^2/2, of the potential U(x - x0) of their springs, and of
     both. On linear springs without a gap each of the first two is L T/2 at e = 1.
 
-    Of 2, 4, 8, ... successive snapshots the average is kept, so that there are at most 1000 times.
-    An ensemble keeps all times, and so does a run that observes the snapshots too. With two or more
-    replicas each has its _error, the standard error of their mean. Times that not every replica
-    reached are left out, or NaN beside snapshots.
+    Of 2, 4, 8, ... successive snapshots the average is kept, so that there are at most 1000 times;
+    an ensemble, and a run that observes the snapshots too, keep all. With two or more replicas each
+    has its _error, the standard error of their mean. Times that not every replica reached are left
+    out, or NaN beside snapshots.
     """
 
     name = "energy"

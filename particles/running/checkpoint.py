@@ -49,12 +49,8 @@ class Checkpoint:
     def resumed(self, replicas: Sequence[Replica]) -> Iterator[None]:
         """Set the replicas to the state in the file, if there is one, and lock the file.
 
-        Raises
-        ------
-        OSError
-            If the file cannot be read or written, or another run is using it.
-        ValueError
-            If it is damaged, or not a checkpoint of this run.
+        It is an OSError if the file cannot be read or written, or another run is using it, and a
+        ValueError if it is damaged, or not a checkpoint of this run.
         """
         make_folder(self.path.parent)
         with locked(self.path):
