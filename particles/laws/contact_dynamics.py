@@ -53,6 +53,5 @@ def drift(y, v, anchors, dt, restitution, pull, exponent, integers, floats):  # 
     for i in range(y.size):
         v[i] = shifted[i] + totals[i]
         # Bounds of touching rods agree up to rounding errors: keep the order exact.
-        before = max(y[i] + dt * v[i], before)
-        y[i] = before
+        before = y[i] = max(y[i] + dt * v[i], before)
     return np.int64(merged)

@@ -107,8 +107,7 @@ def drift(y, v, dt, violations, floats, clusters):  # type: ignore[no-untyped-de
     count = _0
     before = -np.inf
     for i in range(y.size):
-        position = y[i] + dt * v[i]
-        y[i] = position
+        position = y[i] = y[i] + dt * v[i]
         violations[count] = i
         count += INDEX(position < before)
         before = position

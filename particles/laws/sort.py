@@ -27,8 +27,7 @@ def _merge(y, v, begin, middle, end, y_left, v_left):  # type: ignore[no-untyped
         first -= 1
     count = middle - first
     for i in range(count):
-        y_left[i] = y[first + i]
-        v_left[i] = v[first + i]
+        y_left[i], v_left[i] = y[first + i], v[first + i]
     taken, right, place = 0, middle, first
     while taken < count:
         if right < end and y[right] < y_left[taken]:
@@ -46,15 +45,11 @@ def _insert_and_merge(y, v, y_left, v_left):  # type: ignore[no-untyped-def]
     n = y.size
     for begin in range(0, n, _RUN):
         for i in range(begin + 1, min(begin + _RUN, n)):
-            y_i = y[i]
-            v_i = v[i]
-            j = i
+            y_i, v_i, j = y[i], v[i], i
             while j > begin and y[j - 1] > y_i:
-                y[j] = y[j - 1]
-                v[j] = v[j - 1]
+                y[j], v[j] = y[j - 1], v[j - 1]
                 j -= 1
-            y[j] = y_i
-            v[j] = v_i
+            y[j], v[j] = y_i, v_i
     width = _RUN
     while width < n:
         for middle in range(width, n, 2 * width):

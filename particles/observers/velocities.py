@@ -70,7 +70,6 @@ class Velocities(Averaged):
         self.scale = self._scale(run)
         places = np.linspace(-1, 1, self.bins + 1)
         self.edges = places * self.largest if self.largest else self.scale * np.sinh(LAST * places)
-        self.chosen = run.chosen
         self.rows = np.arange(run.chosen.size) * self.bins
         self.counts = np.zeros(run.chosen.size * self.bins, dtype=np.int64)
         self.outside = 0
@@ -91,7 +90,7 @@ class Velocities(Averaged):
         return 8.0 * self.bins * run.chosen.size + super().memory(run)
 
     def observe(self, snapshots: Snapshots) -> None:
-        v = snapshots.v[:, self.chosen]
+        v = snapshots.v[:, self.run.chosen]
         square, sums = v * v, self.sums[snapshots.block]
         sums[0] += v.sum(axis=0)
         sums[1] += square.sum(axis=0)

@@ -79,7 +79,7 @@ class Checkpoint:
 
     def _write(self, replicas: Sequence[Replica]) -> None:
         """Write the state of all replicas, each at the end of its chunk."""
-        header = json.dumps({"identity": self.identity}).encode()
+        header = json.dumps(self.identity).encode()
         arrays: dict[str, Any] = {"header": np.frombuffer(header, dtype=np.uint8)}
         for number, replica in enumerate(replicas):
             if not replica.lock.acquire(timeout=_LONGEST):
@@ -103,7 +103,7 @@ class Checkpoint:
             if sum(part.file_size for part in archive.zip.infolist()) > len(content):
                 raise ValueError("compressed, which may fill any memory")
             arrays = dict(archive)
-            identity = dict(json.loads(bytes(arrays["header"]))["identity"])
+            identity = dict(json.loads(bytes(arrays["header"])))
         # numpy may raise anything for a file of another kind with a valid checksum, e.g. a result.
         except Exception as error:
             raise ValueError(f"{self.path}: not a checkpoint") from error
