@@ -44,8 +44,7 @@ def require_resolved(chain: Chain, extent: float) -> None:
 def bins_per_rod(chain: Chain, reach: float | None = None) -> int:
     """Return the odd number n of grid spacings in one rod length 2R.
 
-    21, or more where the thermal length is small (a quarter of it is resolved), as long as the
-    grid has at most 2**18 nodes; fewer, down to 1, where the chain is longer than that.
+    It is 21, or more to resolve the thermal length, but at most as many as make 2**18 nodes.
     """
     wanted = max(_BINS_PER_ROD, 8 * chain.radius / (chain.thermal_length or math.inf))
     affordable = _MOST_NODES * 2 * chain.radius / (2 * _half_width(chain, reach))

@@ -55,8 +55,8 @@ def kernel(
 ) -> Any:
     """Compile ``function`` when it is first called; a decorator.
 
-    ``fused``: a multiplication and an addition may become one instruction with one rounding.
-    ``allocates``: it makes arrays, or returns one. Otherwise numba refuses ("NRT required").
+    ``fused``: a multiplication and an addition may become one instruction. ``allocates``: it makes
+    or returns arrays, which numba refuses otherwise ("NRT required").
     """
     if function is None:
         return partial(kernel, fused=fused, allocates=allocates)

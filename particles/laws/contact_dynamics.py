@@ -33,7 +33,7 @@ def drift(y, v, anchors, dt, restitution, pull, exponent, integers, floats):  # 
     """Advance ``y`` and ``v`` in place by ``dt``; return the contacts that carried an impulse.
 
     ``pull`` is k/m if the springs are kicked in halves, else 0, ``exponent`` that of their
-    potential. ``integers`` and ``floats``, at least three and four rows of L, are scratch space.
+    potential. ``integers`` and ``floats`` are scratch space.
     """
     violations, firsts, lasts = integers[0], integers[1], integers[2]
     shifted, totals, sums, unused = floats[0], floats[1], floats[2], floats[3]

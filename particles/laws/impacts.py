@@ -37,10 +37,7 @@ def make_impacts(size: int) -> NDArray[np.float64]:
 
 @kernel
 def record_impact(contact, first, last, closing, separating, impacts):  # type: ignore[no-untyped-def]
-    """Add a collision of the rods ``contact`` and ``contact + 1`` (counted from 0).
-
-    ``first`` and ``last`` are the outermost rods of the two clusters that meet.
-    """
+    """Add a collision at a contact, of the clusters of the rods ``first`` to ``last``."""
     left, right = float(contact - first + 1), float(last - contact)
     mass = left * right / (left + right)
     for other in range(first, last):

@@ -101,8 +101,7 @@ def pool(values, carried, violations, count, firsts, lasts, sums, carried_sums):
 def drift(y, v, dt, violations, floats, clusters):  # type: ignore[no-untyped-def]
     """Advance ``y`` and ``v`` in place by ``dt``; return the contacts that ended up closed.
 
-    ``violations``, L integers, and ``floats``, at least two rows of L, are scratch space.
-    ``clusters`` records the rods that have merged.
+    The others are scratch space, and ``clusters`` records the rods that have merged.
     """
     count = _0
     before = -np.inf

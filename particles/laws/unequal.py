@@ -129,10 +129,7 @@ def _record_impact(contact, a, b, mass, closing, separating, before, scratch, im
 
 @kernel
 def strengthen(kicks, y, strength, law, scratch):  # type: ignore[no-untyped-def]
-    """Multiply the velocities that kicks give to rods in contact, without their mean.
-
-    It is ``closed_contacts.strengthen`` for unequal masses. The mean of rods at a wall is 0.
-    """
+    """Do as ``closed_contacts.strengthen`` with unequal masses; at a wall the mean is 0."""
     clusters, before = scratch.clusters, 1 if law.high < np.inf else 0
     for k in range(clusters.number[0]):
         first, last = clusters.firsts[k], clusters.lasts[k]

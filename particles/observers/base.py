@@ -142,20 +142,16 @@ class Averaged(Observer):
         return (run.chain.size,)
 
     def memory(self, run: Run) -> float:
-        """Return the bytes of the sums."""
         return 8.0 * run.blocks * math.prod(self.shape(run))
 
     def prepare(self, run: Run, copies: int) -> None:
-        """Make the sums."""
         self.run = run
         self.sums = np.zeros((run.blocks, *self.shape(run)))
 
     def merge(self) -> None:
-        """Add up the sums of neighbouring blocks."""
         merge_pairs(self.sums)
 
     def join(self, others: Sequence[Self]) -> None:
-        """Append the blocks of other replicas, or the groups."""
         parts = [self.sums, *(other.sums for other in others)]
         self.sums = np.stack(parts) if self.run.ensemble else np.concatenate(parts)
 

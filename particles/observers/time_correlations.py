@@ -150,11 +150,7 @@ class TimeCorrelations(Averaged):
         )
 
     def shape(self, run: Run) -> tuple[int, ...]:
-        """Return the shape of the sums of one block.
-
-        The rows are velocities and increments by lag, d and d^2; the columns are rods, waves and
-        the number of terms.
-        """
+        # Velocities and increments by lag, d and d^2; of rods, of waves, and how many terms.
         _, last = self._plan(run)
         return 2 * (last + 1) + 2, run.chosen.size + min(self.waves, run.chain.size) + 1
 

@@ -19,10 +19,7 @@ _PATIENCE = 64
 def run_all(
     replicas: Sequence[Replica], threads: int, checkpoint: Checkpoint | None, progress: bool | str
 ) -> bool:
-    """Run the replicas in threads; return whether Ctrl-C, or a signal like it, stopped them.
-
-    ``progress``: whether to show a bar; a text stands in front of it.
-    """
+    """Run the replicas in threads; return whether Ctrl-C, or a signal like it, stopped them."""
     stop, one_by_one = Event(), Lock()
     total = sum(replica.total for replica in replicas)
     futures: list[Future[None]] = []
