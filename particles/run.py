@@ -44,7 +44,9 @@ class Run:
     The snapshots are counted in up to ``blocks`` blocks, the first ones of ``block`` snapshots
     each. In an ensemble every block is one snapshot, at one output time, the first after the
     warm-up. The other fields are the arguments of ``simulate``. Where these are None, or no whole
-    number of steps, the run chooses or rounds them.
+    number of steps, the run chooses or rounds them. A run takes 200 bytes a rod and 10 kB a
+    replica, 40 MB for the snapshots under way, and seven times what the observers keep, while they
+    are joined and averaged; it is a ValueError if this does not fit into memory.
     """
 
     chain: Chain
