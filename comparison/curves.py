@@ -1,7 +1,5 @@
 """What is drawn of a result: one quantity over one abscissa, and the names of both axes."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple

@@ -4,8 +4,6 @@
 that are written to files are made without pyplot, and without the settings of the reader.
 """
 
-from __future__ import annotations
-
 import string
 from collections.abc import Iterable
 from contextlib import AbstractContextManager

@@ -1,7 +1,5 @@
 """The theories of the steady state: which one a chain has, and what pictures call them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Velocity widths in the centre and at the border of a chain, and how far a theory is from them."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Arrays: the type of most of them, and the check of those that a user gives."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

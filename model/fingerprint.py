@@ -4,8 +4,6 @@ The version of the package cannot show this, because it does not change when the
 between two releases. A release has the same fingerprint on every machine.
 """
 
-from __future__ import annotations
-
 import hashlib
 from functools import cache
 from pathlib import Path

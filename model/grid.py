@@ -6,8 +6,6 @@ density is kept in hat weights: each point is shared linearly between its two ne
 The fraction of a bin that rods cover then follows without any error, in O(1) per bin.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -11,8 +11,6 @@ For a short chain this takes far longer than the work. numba's ``_nrt=False`` sw
 off for kernels that allocate no memory. A numba that does not know this option counts again.
 """
 
-from __future__ import annotations
-
 import multiprocessing
 import sys
 import warnings

@@ -3,8 +3,6 @@
 The operating system frees a lock when the process ends, however it ends (package filelock).
 """
 
-from __future__ import annotations
-
 import errno
 import hashlib
 import os

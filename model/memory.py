@@ -3,8 +3,6 @@
 Linux grants more memory than there is, and kills the process when the memory is used.
 """
 
-from __future__ import annotations
-
 
 def require_memory(wanted: str, needed: float) -> None:
     """Raise a ValueError with both numbers unless ``needed`` bytes are available.

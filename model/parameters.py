@@ -3,8 +3,6 @@
 numpy is not imported, so that ``--help`` of the command line lists the parameters without a delay.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields

@@ -1,7 +1,5 @@
 """The running process: signals that ask it to end, and the end of the process that started it."""
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import signal

@@ -4,8 +4,6 @@ Each form means one whole number. Unlike the state of a Generator, it can be wri
 provenance and divided into streams of replicas.
 """
 
-from __future__ import annotations
-
 from typing import SupportsIndex
 
 import numpy as np

@@ -9,8 +9,6 @@ floats and arrays. They are plain Python, so that a kernel can compile them in w
 :mod:`crazybilliards.model.kernels`.
 """
 
-from __future__ import annotations
-
 from typing import TypeVar
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What was meant by a wrong name, in one line: a symbol of the paper, or a name spelled alike."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Collection, Iterable
 from difflib import get_close_matches

@@ -1,7 +1,5 @@
 """What the kernels need of a run: the chain and the scheme of the time steps as plain numbers."""
 
-from __future__ import annotations
-
 import math
 from typing import Literal, NamedTuple
 

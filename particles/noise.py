@@ -12,8 +12,6 @@ Multiplications and additions may be fused into one instruction where the machin
 last bits may differ between machines.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

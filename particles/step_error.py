@@ -1,7 +1,5 @@
 """The relative error of a velocity width that is due to the time step; see docs/particles.md."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

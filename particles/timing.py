@@ -14,8 +14,6 @@
   hundredth of the duration. With exact motion they are as far apart as 10 steps would be.
 """
 
-from __future__ import annotations
-
 import math
 
 from crazybilliards.model import Chain

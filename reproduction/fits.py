@@ -1,7 +1,5 @@
 """Fits that the paper makes to points: growing energies, scaling, exponents, and tails."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The command ``crazybilliards``: one subcommand per job."""
 
-from __future__ import annotations
-
 import inspect
 import os
 import sys

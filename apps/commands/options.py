@@ -1,7 +1,5 @@
 """Options that several commands have; those of a chain come from the class that declares them."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable
 from dataclasses import fields

@@ -7,8 +7,6 @@ are solved for the page alone, one at a time: a page of another site cannot send
 list of files is served, nothing is written, and nothing is kept of a visitor.
 """
 
-from __future__ import annotations
-
 import ipaddress
 import json
 import re

@@ -1,7 +1,5 @@
 """The theory of a chain for the page."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from typing import Any

@@ -4,8 +4,6 @@ Densities and displacements have the differences from the exact equilibrium, at 
 simulation, below them, which are too small to be seen above.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

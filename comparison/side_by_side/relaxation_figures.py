@@ -1,7 +1,5 @@
 """Pictures of a relaxation: space and time, profiles, width and centre, and those of a film."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -8,8 +8,6 @@ The file holds all parameters and the fingerprint of the source code that comput
 others does not count as the case's result.
 """
 
-from __future__ import annotations
-
 import hashlib
 import inspect
 import json

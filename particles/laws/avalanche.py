@@ -12,8 +12,6 @@ Each collision starts at most one wave, and each wave ends once, so one costs O(
                                          (triggered: and one starts at c)
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

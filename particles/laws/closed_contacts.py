@@ -7,8 +7,6 @@ mean kick of a cluster grow, which keeps the momentum. docs/particles.md has the
 measured errors, and why the factor is taken up to the critical restitution.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

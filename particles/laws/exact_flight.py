@@ -19,8 +19,6 @@ so that no damping, and no stiffness, is a special case. Squares would let rods 
 in a step gain or lose 1e-16 n of their energy, so E of rods that swing comes from cos(w t).
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

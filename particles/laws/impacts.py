@@ -10,8 +10,6 @@ therefore add up to the momentum that all rods on one side of it lose in collisi
 with a gap that merge or hardly touch, whose w is corrected (``spring_correction.py``).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -8,8 +8,6 @@ order (``EVENTS``). ``method="contact-dynamics"`` solves all contacts of a step 
 is no operator: chains whose motion is known (``exact_flight.py``) need none.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Set
 from typing import Literal, NamedTuple

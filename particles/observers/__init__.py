@@ -3,8 +3,6 @@
 It needs no change of a kernel: kernels fill buffers of snapshots, and observers read them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection
 
 from crazybilliards.model.checks import check_choice, is_list, shown

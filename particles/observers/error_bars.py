@@ -7,8 +7,6 @@ themselves. Blocks may differ in length. The weights are those of the delete-m_j
 Meijer and van der Leeden, Statistics and Computing 9, 3-8, 1999).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

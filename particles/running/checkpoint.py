@@ -7,8 +7,6 @@ atomically, carries a checksum, and is used by one process at a time. Replicas a
 chunks, whose boundaries do not depend on the time of saving, so a resumed run gives the same bits.
 """
 
-from __future__ import annotations
-
 import errno
 import io
 import json

@@ -1,7 +1,5 @@
 """Joins the measurements of many replicas to one result with status, times and provenance."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Replicas in threads: progress bar, Ctrl-C and the like, checkpoints during the run."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from concurrent.futures import FIRST_EXCEPTION, Future, ThreadPoolExecutor, wait
 from signal import SIGINT
