@@ -1,11 +1,14 @@
 r"""Covariance h' of the displacements of neighbourhoods, which W_x has in place of h.
 
 After one rod and pairs have agreed, the equation of :mod:`.fluctuations` is solved once more,
-with three changes, which docs/gas.md derives. The velocities keep h.
+with three changes. The velocities keep h.
 
 **Background.** W_x has the local part of f. So T_f, P/T_f and h_uu stand for Theta, n and h_c.
 
-**Source.** u Theta: Lambda(l) g(l') (step(l' - l) - l'/L).
+**Source.** Where two rods are about to collide there is one rod more, and 1/L of a rod fewer
+everywhere, which displaces the label l': u Theta has Lambda(l) g(l') (step(l' - l) - l'/L). h has
+g(l) in place of g(l'). To first order in 1 - e that is not right, but with this source W_v of the
+first rod would be worse: two errors cancel.
 
 **Relaxing stress.** Fluctuating gaps resist a sudden strain more than a slow one,
 
