@@ -108,7 +108,11 @@ def pack_lessons() -> None:
 
 
 def point_to_copies(app, page, source) -> None:
-    """Turn links to ../notebooks/, which are right in the repository, into links to the copies."""
+    """Turn links to ../notebooks/, which are right in the repository, into links to the copies.
+
+    Lines that begin ``*On a code host`` stand for included files, which only this build shows.
+    """
+    source[0] = re.sub(r"^\*On a code host .*\*$", "", source[0], flags=re.MULTILINE)
     if not page.startswith("notebooks/"):
         source[0] = source[0].replace("](../notebooks/", "](notebooks/")
         source[0] = source[0].replace("](../../notebooks/", "](../notebooks/")
