@@ -9,6 +9,7 @@ from pkgutil import resolve_name
 
 import jupytext
 import pandas as pd
+import pytest
 import qr_code
 from installation import FOLDERS, ROOT
 
@@ -141,3 +142,13 @@ def test_the_qr_code_leads_to_the_documentation_that_the_project_names():
     """If it does not, draw it again: python docs/figures/qr_code.py."""
     picture = (ROOT / "docs/figures/qr_code.svg").read_text(encoding="utf-8")
     assert f"<title>{escape(qr_code.address())}</title>" in picture
+
+
+@pytest.mark.compiled
+def test_the_script_of_the_readme_draws_its_picture(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    [script] = re.findall(
+        r"```python\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL
+    )
+    exec(script, {})
+    assert (tmp_path / "density.png").read_bytes().startswith(b"\x89PNG")
