@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 from browser import errors
-from driven_page import control, rows, slide, text, turn, visit
+from driven_page import control, rows, show, slide, text, turn, visit
 
 import crazybilliards as cb
 from crazybilliards.comparison.coverage import coverage_density
@@ -216,6 +216,7 @@ def test_a_challenge_of_the_gas_is_solved_and_then_answered(
     visit(browser, f"{address}#challenge={name}", "narrow", quiet=True)
     assert not control(browser, "damping").is_displayed()
     assert not control(browser, "push").is_displayed()
+    show(browser)
     [(parameter, series)] = values.items()
     for value in series:
         assert text(browser, "answer") == ""
@@ -230,7 +231,7 @@ def test_the_gauge_is_beside_the_exact_force_and_the_box_holds_its_rods(browser,
     visit(browser, address + "#spring=none&size=20&box=60&mass_ratio=3&speed=100", quiet=True)
     rows(browser, 3000)
     gauge = text(browser, "gauge")
-    numbers = re.search(r": ([\d.]+) ± ([\d.]+), exact: L T/\(X \S 2RL\) = ([\d.]+)\.", gauge)
+    numbers = re.search(r"mean ([\d.]+) ± ([\d.]+), exact: L T/\(X \S 2RL\) = ([\d.]+)\.", gauge)
     force, error, law = (float(number) for number in numbers.groups())
     assert abs(force - law) < 5 * error < 0.1 * law
     slide(browser, size=200)
@@ -247,5 +248,6 @@ def test_a_question_is_not_judged_on_a_chain_that_it_is_not_about(browser, addre
     ):
         turn(browser, f"#challenge={setting}&speed=300")
         slide(browser, spring=spring)
+        show(browser)
         assert reason in rows(browser, 1500)
         assert text(browser, "answer") == ""

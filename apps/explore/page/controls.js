@@ -49,9 +49,9 @@
 
   /* Say how far the prediction is from what is measured, once the chain is as the question asks. */
   function compare({ seen, drawn: [left, right] }) {
-    const { then = {}, of = "measured", y } = chosen.predict, { chain } = world.state, { settled } = world.measurement;
+    const { then = {}, of, y } = chosen.predict, { chain } = world.state, { settled } = world.measurement;
     const other = Object.entries(then).filter(([name, value]) => chain[name] !== value);
-    const points = (seen[of] ?? []).map(([x, value]) => [(x - left) / (right - left), value]);
+    const points = (seen[of] ?? seen.measured ?? seen.middle ?? []).map(([x, value]) => [(x - left) / (right - left), value]);
     find("compared").textContent = !predicted() ? ""
       : other.length ? `Your curve is for ${other.map(([name, value]) => `${SYMBOLS[name]} = ${value}`).join(", ")}.`
         : settled || world.ranAway ? ChainPredicting.distance(guess, points, y[0] < 0) : "";
@@ -91,11 +91,14 @@
   /* Let the challenge look, and say what it found; only that it is done is read aloud. */
   function judge() {
     judging = false;
-    if (hidden()) find("said").textContent = "";
-    if (!chosen.watch || world.hand || hidden()) return; // a rod in the hand does not move by itself
+    if (!chosen.watch || world.hand) return; // a rod in the hand does not move by itself
     const gas = P.isGas(chosen.chain);
     if (gas !== P.isGas(world.state.chain)) {
       find("said").textContent = `This question is about ${gas ? "a gas in a box" : "rods on springs"}.`;
+      return;
+    }
+    if (hidden()) {
+      find("said").textContent = "";
       return;
     }
     const { done, said, pending } = chosen.watch(world), mark = find(`challenge-${chosen.id}`);

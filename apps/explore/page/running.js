@@ -14,11 +14,11 @@ const ChainRunning = (() => {
   const GAUGED = 10; // blocks after which the force on the walls is kept
   const GROWN = 10; // times the energy of free rods: beyond, noise hardly counts
 
-  // `touched`: the energy after the last touch. `met`: the contacts that have closed in the last row.
+  // `touched`: the energy after the last touch, `since` when it was. `met`: the contacts that have closed in the last row.
   // `forces`: {chain, value, error} of the force on the walls of the gas in several boxes.
   const world = {
     state: null, measurement: null, speed: SEEN, pushes: [], pushed: null, ranAway: false, growth: 1, touched: 0,
-    history: [], met: [], forces: [],
+    since: 0, history: [], met: [], forces: [],
   };
   let stage = null, seed = 0, stride = 1, skipped = 0, before = new Set();
 
@@ -68,7 +68,8 @@ const ChainRunning = (() => {
     const energy = laws().energy(world.state);
     world.touched = Math.max(energy, freeEnergy());
     world.growth = energy / freeEnergy();
-    world.history = [[world.state.time, world.growth, 0]];
+    world.since = world.state.time;
+    world.history = [[0, world.growth, 0]];
     stride = 1;
     if (!sameChain) stage.restart(world.state.chain);
   }
@@ -108,7 +109,7 @@ const ChainRunning = (() => {
     if (++skipped < stride) return;
     skipped = 0;
     const { time, collisions, hits } = world.state;
-    world.history.push([time, world.growth, collisions + (hits?.[0] ?? 0)]);
+    world.history.push([time - world.since, world.growth, collisions + (hits?.[0] ?? 0)]);
     if (world.history.length <= KEPT) return;
     world.history = world.history.filter((_, k) => k % 2 === 0);
     stride *= 2;
