@@ -128,13 +128,16 @@ def test_the_concordance_has_every_equation_and_figure():
     assert names == [figure.name for figure in FIGURES]
 
 
-def test_links_to_settings_of_the_chain_name_its_parameters():
+def test_links_to_settings_of_the_chain_name_what_it_has():
     """Sphinx does not check an address with a setting, chain.html#size=2."""
-    pages = "".join(path.read_text(encoding="utf-8") for path in PAGES)
-    settings = re.findall(r'href="chain\.html#([^"]*)"', pages)
-    names = {part.split("=")[0] for text in settings for part in re.split("&amp;|&", text)}
-    assert names
-    assert names <= cb.Chain().parameters().keys()
+    page = (ROOT / "apps/explore/page/chain.html").read_text(encoding="utf-8")
+    texts = "".join(path.read_text(encoding="utf-8") for path in PAGES + LESSONS)
+    settings = re.findall(r'href="(?:chain\.html|\.\./docs/chain\.md)#([^"]*)"', texts)
+    given = [part.split("=") for text in settings for part in re.split("&amp;|&", text)]
+    assert given
+    for name, value in given:
+        is_one_of = {"challenge": f'"challenge-{value}"', "preset": f'value="{value}"'}
+        assert is_one_of.get(name, f'data-chain="{name}"') in page, (name, value)
 
 
 def test_the_qr_code_leads_to_the_documentation_that_the_project_names():
