@@ -105,6 +105,7 @@ reproduce: $(VENV)/installed
 lessons: $(VENV)/installed-notebooks
 	@$(BIN)/python notebooks/without_outputs.py $(LESSONS)
 	@echo "open the lessons with: $(BIN)/jupyter lab $(LESSONS)"
+	@echo "open the page of the chain with: $(BIN)/crazybilliards explore"
 
 # No bars (TQDM_DISABLE) in what is kept. A number that disagrees stops a strict lesson. Copies of the
 # notebooks are executed, and the documentation shows their outputs.

@@ -167,8 +167,8 @@ check(my_collision, solutions.collide, at=pairs, hint=hint)
 # At $e=1$ the rods swap their velocities. At $e=0$ they move on together.
 #
 # **Back on the page.** The push went from rod to rod. Which share of its velocity arrives after 19
-# such collisions at $e = 0.9$, and which at $e = 0.98$? Test both with
-# <a href="../docs/chain.md#size=20&damping=0.3&gap=0.5&restitution=0.98">0.98</a>.
+# such collisions at $e = 0.9$? Which at
+# <a href="../docs/chain.md#size=20&damping=0.3&gap=0.5&restitution=0.98">0.98</a>? Push, and compare.
 #
 # **How much energy does a collision take?** Look at the two rods from their centre of mass. The
 # collision does not change its velocity, so only the motion that you see from there can lose

@@ -288,7 +288,7 @@ assert cb.deviation(cb.smooth(run), cb.smooth(exact)).maximum_in_errors < 5
 #
 # </details>
 #
-# **Back on the page.** The peaks are $2R$ apart, and each has a width of about $s\propto A$. Draw the
+# **Back on the page.** The peaks are about $2R$ apart, and their width grows like $s\propto A$. Draw the
 # density of <a href="../docs/chain.md#size=20&speed=100">20 rods</a> at $A = 4$, then set it.
 #
 # ## 4. One rod

@@ -28,7 +28,7 @@
 # *90 minutes. `make lessons` writes copies without outputs and solutions.*
 #
 # **Two minutes on the page.** Draw the density of
-# <a href="../docs/chain.md#size=30&amplitude=3&speed=100">30 rods</a> that you expect, from the
+# <a href="../docs/chain.md#amplitude=3&size=30&speed=100">30 rods</a> that you expect, from the
 # centre to the right end: is it a smooth hill, or does it show the rods?
 
 # %% tags=["hide-input"]
@@ -325,7 +325,7 @@ assert after.maximum_in_errors < 5
 # </details>
 #
 # **Back on the page.** A fluid is right where the layers are gone. Guess the amplitude from which on
-# the density of <a href="../docs/chain.md#size=30&amplitude=3&speed=100">30 rods</a> looks like the
+# the density of <a href="../docs/chain.md#amplitude=3&size=30&speed=100">30 rods</a> looks like the
 # hill of the fluid, also at its ends, and look.
 #
 # **You can stop here.** You have derived the force balance of rods, found that it is exact for

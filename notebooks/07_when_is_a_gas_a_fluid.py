@@ -57,7 +57,7 @@ if not safe(
     size, ratio = 64, 3
 
 # %% [markdown]
-# ## 1. Why a fluid needs a temperature
+# ## 1. A fluid in two ordinary equations
 #
 # In [lesson 5](05_from_the_kinetic_equation_to_the_force_balance.ipynb) the fluid was at rest. With a
 # flow $V(x,t)$ the paper has a continuity and a velocity equation,

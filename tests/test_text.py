@@ -3,12 +3,16 @@
 Sphinx checks the links of the documentation.
 """
 
+import os
 import re
+import subprocess
+import sys
 from html import escape
 from pkgutil import resolve_name
 
 import jupytext
 import pandas as pd
+import pytest
 import qr_code
 from installation import FOLDERS, ROOT
 
@@ -95,6 +99,15 @@ def test_the_draft_of_the_paper_cites_what_its_bibliography_holds():
     text, sources = ((ROOT / f"docs/paper/paper.{end}").read_text("utf-8") for end in ("md", "bib"))
     cited, entries = re.findall(r"@(\w+)", text), re.findall(r"(?m)^@\w+\{(\w+),", sources)
     assert sorted(set(cited)) == sorted(entries)
+
+
+@pytest.mark.validate
+def test_the_sixty_lines_give_what_their_page_says(tmp_path):
+    script, settings = ROOT / "docs/paper/sixty_lines.py", {**os.environ, "MPLBACKEND": "agg"}
+    command = [sys.executable, script]
+    run = subprocess.run(command, cwd=tmp_path, env=settings, capture_output=True, text=True)
+    assert 0.03 < float(re.findall(r"at most (\S+) of close packing", run.stdout)[0]) < 0.045
+    assert (tmp_path / "sixty_lines.png").exists()
 
 
 # -- the concordance --------------------------------------------------------------------------
