@@ -402,9 +402,12 @@ ax.legend()
 plt.show()
 share = 1 / sizes  # of the centre of mass, which collisions cannot drive
 law = 1 / (share + (1 - share) / (1 - sizes / critical))
-agree("with the centre of mass", inverse, law, np.hypot(error, 0.02))
+agree("law with the share of the centre of mass", inverse, law, np.hypot(error, 0.02))
 
 # %% [markdown]
+# The points lie a little above the line, because collisions cannot drive the centre of mass, which
+# keeps its share $E_0/L$.
+#
 # ## 5. Flippers
 #
 # Above $L_c$ the energy grows, exponentially on linear springs. On quadratic springs, $F = k\,d\,|d|$,
