@@ -29,8 +29,8 @@
 #
 # **Two minutes on the page.** Look at
 # <a href="../docs/chain.md#size=2&gap=5&second=velocities">two rods that hardly ever meet</a>. Guess
-# how many swings a rod takes to forget where it was. Then draw the distribution of velocities that you
-# expect, and compare it with what the page measures at 300 $t_0$/s.
+# how many swings a rod takes to forget where it was. Then draw on paper the distribution of velocities
+# that you expect, and compare it with what the page measures at 300 $t_0$/s.
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt

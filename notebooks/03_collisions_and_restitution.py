@@ -28,8 +28,8 @@
 # *90 minutes. `make lessons` writes copies without outputs and solutions.*
 #
 # **Two minutes on the page.** Does <a href="../docs/chain.md#challenge=push">a push</a> at the left
-# end of 20 rods arrive at the right end, at $e = 1$ and at $e = 0.9$? Draw its way through the strip
-# of past positions before you push.
+# end of 20 rods arrive at the right end, at $e = 1$ and at $e = 0.9$? Predict how many of three
+# pushes do, and then push.
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt

@@ -30,8 +30,8 @@
 # *90 minutes. `make lessons` writes copies without outputs and solutions.*
 #
 # **Two minutes on the page.** <a href="../docs/chain.md#preset=elastic">Do elastic collisions leave
-# a trace?</a> Draw the density at $e = 1$ and the distribution of the velocities that you expect,
-# then set $e = 1$.
+# a trace?</a> Draw the distribution of the velocities at $e = 1$ that you expect and, on paper, the
+# density. Then set $e = 1$.
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
@@ -288,8 +288,8 @@ assert cb.deviation(cb.smooth(run), cb.smooth(exact)).maximum_in_errors < 5
 #
 # </details>
 #
-# **Back on the page.** The peaks are about $2R$ apart, and their width grows like $s\propto A$. Draw the
-# density of <a href="../docs/chain.md#size=20&speed=100">20 rods</a> at $A = 4$, then set it.
+# **Back on the page.** The peaks are about $2R$ apart, and their width grows like $s\propto A$. Draw on
+# paper the density of <a href="../docs/chain.md#size=20&speed=100">20 rods</a> at $A = 4$, then set it.
 #
 # ## 4. One rod
 #

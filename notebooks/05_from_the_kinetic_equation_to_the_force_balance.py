@@ -27,7 +27,7 @@
 #
 # *90 minutes. `make lessons` writes copies without outputs and solutions.*
 #
-# **Two minutes on the page.** Draw the density of
+# **Two minutes on the page.** Draw on paper the density of
 # <a href="../docs/chain.md#amplitude=3&size=30&speed=100">30 rods</a> that you expect, from the
 # centre to the right end: is it a smooth hill, or does it show the rods?
 

@@ -29,7 +29,7 @@
 #
 # **Two minutes on the page.** Let the page measure the force of
 # <a href="../docs/chain.md#spring=none&size=20&box=80&second=pressure&speed=100">20 rods in 80
-# R</a>. Guess the force in a box of 60 R, draw its point, and then set $X = 60$.
+# R</a>. Guess the force in a box of 60 R, and then set $X = 60$.
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt

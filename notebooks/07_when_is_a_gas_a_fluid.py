@@ -28,8 +28,8 @@
 # *90 minutes. `make lessons` writes copies without outputs and solutions.*
 #
 # **Two minutes on the page.** All rods begin with
-# <a href="../docs/chain.md#challenge=maxwell">the same speed</a>. Draw the distribution of velocities
-# that you expect after a long time, for one mass and for two. Then measure both.
+# <a href="../docs/chain.md#challenge=maxwell">the same speed</a>. Predict the kurtosis of their
+# velocities after a long time, for one mass and for two. Then measure both.
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
