@@ -173,17 +173,13 @@ const ChainRunning = (() => {
     else changed(true);
   }
 
-  /* Above e = 1: the rate at which the energy has grown, by least squares, and where simulations confirm
-     it to 5 % that of kinetic/gas/criticality.py. */
-  function growthRates() {
-    const points = world.history.filter(([, growth]) => growth > GROWN), n = points.length, { chain } = world.state;
-    if (n < 5 || chain.spring !== "linear") return null;
+  /* Above e = 1: the rate at which the energy has grown, by least squares. */
+  function growthRate() {
+    const points = world.history.filter(([, growth]) => growth > GROWN), n = points.length;
+    if (n < 5 || world.state.chain.spring !== "linear") return null;
     const mean = (of) => points.reduce((sum, point) => sum + of(point), 0) / n;
     const t = mean(([time]) => time), log = mean(([, growth]) => Math.log(growth));
-    const found = mean(([time, growth]) => (time - t) * (Math.log(growth) - log)) / mean(([time]) => (time - t) ** 2);
-    const { restitution: e, damping, size } = chain, gain = ((e * e - 1) * size) / 2;
-    const holds = chain.gap === 0 && size >= Math.max(30, 1.5 * criticalSize(chain)) && gain <= 1.05;
-    return { found, theory: holds ? (gain / Math.PI) * Math.sqrt(P.STIFFNESS / P.MASS) - damping / P.MASS : null };
+    return mean(([time, growth]) => (time - t) * (Math.log(growth) - log)) / mean(([time]) => (time - t) ** 2);
   }
 
   /* The longest weakly damped chain that does not run away, to first order in e - 1. */
@@ -201,13 +197,12 @@ const ChainRunning = (() => {
   }
 
   function growth() {
-    const { found, theory } = growthRates() || {}, exponential = (rate) => `exp(${rate.toPrecision(2)} t/t₀)`;
-    if (!found) return "";
-    return `, like ${exponential(found)}${theory ? `; theory for weak damping: ${exponential(theory)}` : ""}`;
+    const rate = growthRate();
+    return rate ? `, like exp(${rate.toPrecision(2)} t/t₀)` : "";
   }
 
   return {
-    world, unit, begin, change, goOn, step, push, setSpeed, take, letGo, growthRates, criticalSize, happening,
+    world, unit, begin, change, goOn, step, push, setSpeed, take, letGo, growthRate, criticalSize, happening,
     ROWS_A_SECOND, GAUGED, showOn: (shown) => { stage = shown; },
   };
 })();
