@@ -9,8 +9,7 @@ DASK   := .venv-cluster
 OUTPUT ?= results
 QUALITY ?= quick
 WHICH ?= all
-# Lessons have a number; notebooks for readers begin with paper_.
-ALL_LESSONS := [0-9p]
+ALL_LESSONS := [0-9]
 LESSON ?= $(ALL_LESSONS)
 LESSONS := build/lessons
 CHECK_PYTHON := $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -38,8 +37,8 @@ help:
 	@echo "                WHICH=analytics: only the paper's analytics section, 1 min)"
 	@echo "make kernels    compile the kernels, which the first simulation does otherwise (30 s)"
 	@echo "make lessons    write the lessons without outputs and solutions, for learners, into $(LESSONS)/"
-	@echo "make notebooks  execute the notebooks, into build/notebooks/"
-	@echo "make render     write the notebooks from their scripts, with outputs (LESSON=03: only that one)"
+	@echo "make notebooks  execute the lessons, into build/notebooks/"
+	@echo "make render     write the lessons from their scripts, with outputs (LESSON=03: only that one)"
 	@echo "make docs       build the documentation into build/docs/ and execute its examples"
 	@echo "make linkcheck  look up every address the pages point to (needs the network)"
 	@echo "make benchmark  measure the speed"
@@ -106,6 +105,7 @@ reproduce: $(VENV)/installed
 lessons: $(VENV)/installed-notebooks
 	@$(BIN)/python notebooks/without_outputs.py $(LESSONS)
 	@echo "open the lessons with: $(BIN)/jupyter lab $(LESSONS)"
+	@echo "open the page of the chain with: $(BIN)/crazybilliards explore"
 
 # No bars (TQDM_DISABLE) in what is kept. A number that disagrees stops a strict lesson. Copies of the
 # notebooks are executed, and the documentation shows their outputs.
