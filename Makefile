@@ -9,8 +9,7 @@ DASK   := .venv-cluster
 OUTPUT ?= results
 QUALITY ?= quick
 WHICH ?= all
-# Lessons have a number; notebooks for readers begin with paper_.
-ALL_LESSONS := [0-9p]
+ALL_LESSONS := [0-9]
 LESSON ?= $(ALL_LESSONS)
 LESSONS := build/lessons
 CHECK_PYTHON := $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -38,8 +37,8 @@ help:
 	@echo "                WHICH=analytics: only the paper's analytics section, 1 min)"
 	@echo "make kernels    compile the kernels, which the first simulation does otherwise (30 s)"
 	@echo "make lessons    write the lessons without outputs and solutions, for learners, into $(LESSONS)/"
-	@echo "make notebooks  execute the notebooks, into build/notebooks/"
-	@echo "make render     write the notebooks from their scripts, with outputs (LESSON=03: only that one)"
+	@echo "make notebooks  execute the lessons, into build/notebooks/"
+	@echo "make render     write the lessons from their scripts, with outputs (LESSON=03: only that one)"
 	@echo "make docs       build the documentation into build/docs/ and execute its examples"
 	@echo "make linkcheck  look up every address the pages point to (needs the network)"
 	@echo "make benchmark  measure the speed"
@@ -106,6 +105,7 @@ reproduce: $(VENV)/installed
 lessons: $(VENV)/installed-notebooks
 	@$(BIN)/python notebooks/without_outputs.py $(LESSONS)
 	@echo "open the lessons with: $(BIN)/jupyter lab $(LESSONS)"
+	@echo "open the page of the chain with: $(BIN)/crazybilliards explore"
 
 # No bars (TQDM_DISABLE) in what is kept. A number that disagrees stops a strict lesson. Copies of the
 # notebooks are executed, and the documentation shows their outputs.
@@ -160,13 +160,13 @@ package: $(VENV)/installed-package
 # leads them, and Python, to links to the rooms. Links to folders have new files at once.
 LINKS := build/links
 $(LINKS): Makefile $(BIN)/uv
-	mkdir -p $@/crazybilliards
-	for file in __init__.py __init__.pyi __main__.py py.typed; do \
+	@mkdir -p $@/crazybilliards
+	@for file in __init__.py __init__.pyi __main__.py py.typed; do \
 	  ln -sfn "$(CURDIR)/api/$$file" $@/crazybilliards/$$file; done
-	for room in $(ROOMS); do ln -sfn "$(CURDIR)/$$room" $@/crazybilliards/$$room; done
-	$(BIN)/python -c "from pathlib import Path; from sysconfig import get_path; \
+	@for room in $(ROOMS); do ln -sfn "$(CURDIR)/$$room" $@/crazybilliards/$$room; done
+	@$(BIN)/python -c "from pathlib import Path; from sysconfig import get_path; \
 	  Path(get_path('purelib'), 'crazybilliards.pth').write_text(f'{Path(\"$@\").resolve()}\n')"
-	touch $@
+	@touch $@
 
 # uv installs in seconds what pip installs in a minute, and compiles no module that nobody imports.
 # Python 3.11 comes with a setuptools of 2022, which has a known vulnerability.
@@ -175,24 +175,26 @@ INSTALL := $(BIN)/uv --system-certs pip install --quiet --python $(BIN)/python -
 
 $(BIN)/uv:
 	@$(CHECK_PYTHON)
-	@echo "installing everything into $(VENV), for some minutes the first time ..."
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install -qq uv
+	@echo "making the environment $(VENV), with pip and uv; this takes some seconds"
+	@$(PYTHON) -m venv $(VENV)
+	@$(BIN)/python -m pip install -qq uv
 
 $(VENV)/installed: pyproject.toml $(BIN)/uv | $(LINKS)
-	$(INSTALL) .
-	touch $@
+	@echo "installing crazybilliards and what it needs into $(VENV), about 600 MB; on a slow network this takes two minutes"
+	@$(INSTALL) .
+	@touch $@
 
 $(VENV)/installed-%: pyproject.toml $(BIN)/uv | $(LINKS)
-	$(INSTALL) ".[$*]"
-	touch $@
+	@echo "installing what make $* needs into $(VENV), once; on a slow network this takes minutes"
+	@$(INSTALL) ".[$*]"
+	@touch $@
 
 $(OLDEST)/installed: pyproject.toml
 	@$(CHECK_PYTHON)
 	@echo "installing the oldest packages into $(OLDEST), for some minutes ..."
-	$(PYTHON) -m venv $(OLDEST)
-	$(OLDEST)/bin/python -m pip install --quiet --upgrade pip setuptools uv
-	$(OLDEST)/bin/uv --system-certs pip install --quiet --python $(OLDEST)/bin/python --resolution lowest-direct \
+	@$(PYTHON) -m venv $(OLDEST)
+	@$(OLDEST)/bin/python -m pip install --quiet --upgrade pip setuptools uv
+	@$(OLDEST)/bin/uv --system-certs pip install --quiet --python $(OLDEST)/bin/python --resolution lowest-direct \
 	  --editable ".[cluster]"
 	touch $@
 

@@ -17,7 +17,9 @@ matplotlib.use("agg")
 from particle_steps import NOISE, SIZES, WORK
 
 from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
-from crazybilliards.comparison.layout import house_style, legend_above, panels
+from crazybilliards.comparison.layout import entitle, house_style, panels
+
+SHORT = "dt = 1e-3"  # in the names of the work
 
 
 def main(source: Path, table: Path, figure: Path) -> None:
@@ -53,24 +55,27 @@ def _short(value: float) -> str:
     return f"{value:.1f}" if value < 10 else f"{value:.0f}"
 
 
-def with_formula(work: str) -> str:
-    """Return the name of some work with restitution and time step as formulas."""
-    named = re.sub(r"\be = ([\d.]+)", r"$e = \1$", work)
-    return named.replace("dt = 1e-3", r"$\Delta t = 10^{-3}$")
-
-
 def draw(costs: dict[str, dict[int, float]], figure: Path) -> None:
+    """Draw the costs at the step of 1e-3, and those of elastic chains at their longer steps."""
     with house_style():
-        drawn, [ax] = panels(1, 1, height=4.2)
+        drawn, axes = panels(1, 2, height=2.9, sharex=True, sharey=True)
+        for ax, title in zip(axes, (SHORT, "$e = 1$"), strict=True):
+            entitle(ax, title.replace("dt = 1e-3", r"$\Delta t = 10^{-3}\ t_0$"))
+            noise = list(costs[NOISE].items())
+            ax.plot(*zip(*noise, strict=True), color="0.5", linestyle="--", label=NOISE)
+            ax.set(xscale="log", yscale="log", xlabel="rods $L$", ylim=(0.7, 1e4))
+        axes[0].set_ylabel("cost per rod and step [ns]")
         for number, (work, by_size) in enumerate(costs.items()):
-            look: dict[str, Any] = {"color": "0.5", "linestyle": "--"}
             if work != NOISE:
-                look = {"color": COLOURS[number - 1], "marker": SYMBOLS[number - 1]}
-                look |= {"markerfacecolor": "none"}
-            ax.plot(list(by_size), list(by_size.values()), label=with_formula(work), **look)
-        ax.set(xscale="log", yscale="log", xlabel="rods $L$", ylabel="cost per rod and step [ns]")
-        ax.set_ylim(0.7, 2e3)
-        legend_above(drawn, ax)
+                ax = axes[SHORT not in work]
+                label = work.replace(f", {SHORT}" if ax is axes[0] else ", e = 1", "")
+                label = re.sub(r"\be = ([\d.]+)", r"$e = \1$", label)
+                look: dict[str, Any] = {"color": COLOURS[number - 1], "marker": SYMBOLS[number - 1]}
+                ax.plot(*zip(*by_size.items(), strict=True), label=label, **look)
+        for ax in axes:
+            for line in ax.lines:
+                line.set_markerfacecolor("none")
+            ax.legend(loc="upper left")
         drawn.savefig(figure)
 
 

@@ -83,8 +83,8 @@ napoleon_use_ivar = True
 def copy_notebooks() -> None:
     """Bring the executed notebooks below docs/, where Sphinx looks for pages.
 
-    Links to ../docs/ become links to pages. A file that has not changed is left alone, for Sphinx
-    not to read it again.
+    Links to ../docs/ become links to pages, and those with a setting to the chain. A file that has
+    not changed is left alone, for Sphinx not to read it again.
     """
     there = HERE / "notebooks"
     there.mkdir(exist_ok=True)
@@ -93,7 +93,8 @@ def copy_notebooks() -> None:
         if stale.name not in sources:
             shutil.rmtree(stale) if stale.is_dir() else stale.unlink()
     for name, source in sources.items():
-        text = source.read_text(encoding="utf-8").replace("](../docs/", "](../")
+        text = source.read_text(encoding="utf-8").replace("../docs/chain.md#", "../chain.html#")
+        text = text.replace("](../docs/", "](../")
         copy = there / name
         if not copy.exists() or copy.read_text(encoding="utf-8") != text:
             copy.write_text(text, encoding="utf-8")

@@ -75,8 +75,8 @@ def expected(theory: str, chain: Chain) -> Accuracy:
 def _of_force_balance(chain: Chain) -> Accuracy:
     """Return the errors of ``force_balance`` at e = 1, where they were measured."""
     if chain.box:
-        density = _IN_A_BOX if chain.exchangeable else math.nan
-        return Accuracy(velocity_width=0.0, border=0.0, density=density)
+        density, force = (_IN_A_BOX, 0.0) if chain.exchangeable else (math.nan, math.nan)
+        return Accuracy(velocity_width=0.0, border=0.0, density=density, wall_force=force)
     if chain.spring != "linear":
         return Accuracy(velocity_width=0.0, border=0.0)
     place = {"g/s": chain.lattice_gap / chain.thermal_length, "L": chain.size}

@@ -21,6 +21,7 @@ from crazybilliards.model.checks import check_real, refuse_units, shown
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, refuse_unread, require, result
+from crazybilliards.model.warn import warn_user
 
 _RODS_TOLERANCE = 1e-3
 _READ = ("density", "label", "flow_velocity", "velocity_variance")
@@ -143,6 +144,8 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
     require(start, ("density",))
     own = chain_of(start) if "provenance" in start.attrs else chain  # in a quench another one
     refuse_unread(start, "start of hydrodynamics", _READ)
+    if "heat_flux" in start and "time" in start.coords:
+        warn_user("start: its heat_flux is not read, so the fluid goes on without one")
     if start.attrs.get("density_of") == OF_RODS and "displacement" in start:
         start = _as_a_fluid(start)
     if start.density.dims != ("x",):

@@ -25,31 +25,30 @@
 # ([Mani, Böttcher, Herrmann and Helbing](https://arxiv.org/abs/1404.7460)). It also shows what
 # happens when collisions lose energy.
 #
-# *Level: second year. You need: momentum and energy, numpy; no other lesson. Time: 90 minutes. To
-# predict before you see the results, type `make lessons` in the folder of the project, and open the
-# copy of this lesson in `build/lessons/`, which has neither outputs nor solutions.*
+# *90 minutes. `make lessons` writes copies without outputs and solutions.*
+#
+# **Two minutes on the page.** Does <a href="../docs/chain.md#challenge=push">a push</a> at the left
+# end of 20 rods arrive at the right end, at $e = 1$ and at $e = 0.9$? Predict how many of three
+# pushes do, and then push.
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.patches import Rectangle
 from scipy.optimize import isotonic_regression
 from solutions import lesson_03 as solutions
-from teaching import GREEN, PINK, RED, check, panels, played, safe
+from teaching import GREEN, PINK, RED, check, panels, safe
 
-from crazybilliards.comparison.drawing import DIRECTIONS
-
-OF_RODS = (GREEN, "0.25", PINK, "0.65")  # orange and blue are for velocities, to right and left
+OF_RODS = (GREEN, "0.25", PINK, "0.65")
 
 
-def film(chain, x, v, *, duration, every, time_step=None, **settings):
+def watch(chain, x, v, *, duration, every, **settings):
     """Simulate from positions x and velocities v; return times, positions, velocities."""
     run = cb.simulate(
         chain,
         start=cb.given_start(chain, x, v),
         duration=duration,
         every=every,
-        time_step=time_step or every,  # without springs any step will do
+        time_step=every,  # without springs any step will do
         average="ensemble",  # of one copy: its states at equal times, the first being the start
         observe="snapshots",
         progress=False,
@@ -71,7 +70,7 @@ def spacetime(ax, t, x):
 # velocities. With more rods, collisions that lose energy may never end (section 6). The
 # explanations quote the numbers of 12 rods.
 #
-# Lengths are in rod radii R, times in $t_0$, velocities in $R/t_0$. `film` is a short helper: it calls
+# Lengths are in rod radii R, times in $t_0$, velocities in $R/t_0$. `watch` is a short helper: it calls
 # `simulate` with a given start, and returns times, positions and velocities.
 
 # %%
@@ -105,13 +104,13 @@ free = {"amplitude": 0, "damping": 0, "stiffness": 0}  # no noise, no friction, 
 cradle = cb.Chain(size=3, **free)
 x, v = cradle.anchors - [3.02, 0, 0], np.array([1.0, 0, 0])
 methods = ("event-driven", "contact-dynamics")
-films = {method: film(cradle, x, v, duration=7, every=0.05, method=method) for method in methods}
+watched = {method: watch(cradle, x, v, duration=7, every=0.05, method=method) for method in methods}
 
 # %% tags=["hide-input"]
 axes = panels(2, width=9, height=3.4, sharex=True, sharey=True)
 after = {}
 for ax, method in zip(axes, methods, strict=True):
-    t, positions, velocities = films[method]
+    t, positions, velocities = watched[method]
     spacetime(ax, t, positions)
     ax.set_title(f'method="{method}"')
     after[method] = velocities[-1]
@@ -166,6 +165,10 @@ check(my_collision, solutions.collide, at=pairs, hint=hint)
 # </details>
 #
 # At $e=1$ the rods swap their velocities. At $e=0$ they move on together.
+#
+# **Back on the page.** The push went from rod to rod. Which share of its velocity arrives after 19
+# such collisions at $e = 0.9$? Which at
+# <a href="../docs/chain.md#size=20&damping=0.3&gap=0.5&restitution=0.98">0.98</a>? Push, and compare.
 #
 # **How much energy does a collision take?** Look at the two rods from their centre of mass. The
 # collision does not change its velocity, so only the motion that you see from there can lose
@@ -257,7 +260,7 @@ rods = cb.Chain(size=size, gap=1, **free)
 y = rods.reduced_anchors
 v = np.random.default_rng(seed).standard_normal(rods.size) - 0.25 * y
 duration = 8.0
-t, x, _ = film(rods, rods.physical(y), v, duration=duration, every=0.05)
+t, x, _ = watch(rods, rods.physical(y), v, duration=duration, every=0.05)
 times, paths, v_end, closing = billiard(y, v, 1, duration)
 print(f"{len(closing)} collisions")
 
@@ -326,42 +329,30 @@ assert sum(np.sum(flown[:i] > flown[i]) for i in range(rods.size)) == len(closin
 # **Predict.** Now the same rods at three restitutions. Which chain is the widest at the end? Which
 # part of the energy remains at $e=\frac12$?
 #
-# **Run.** In the film, orange rods move to the right, and blue ones to the left.
+# **Run.**
 
 # %%
 restitutions = (0, 0.5, 1)
-films = {}
+watched = {}
 for e in restitutions:
     one = rods.replace(restitution=e)
-    films[e] = film(one, one.physical(y), v, duration=duration, every=0.16, time_step=0.04)
-    energy = np.sum(films[e][2] ** 2, axis=1)
-    print(f"e = {e}: width {np.ptp(films[e][1][-1]):.1f} R", end=", ")
+    watched[e] = watch(one, one.physical(y), v, duration=duration, every=0.04)
+    energy = np.sum(watched[e][2] ** 2, axis=1)
+    print(f"e = {e}: width {np.ptp(watched[e][1][-1]):.1f} R", end=", ")
     print(f"{energy[-1] / energy[0]:.0%} of the energy remains")
 
 # %% tags=["remove-cell"]
-assert all(np.isclose(films[e][2][-1].sum(), v.sum()) for e in restitutions)
-spans = [np.ptp(films[e][1][-1]) for e in restitutions]
+assert all(np.isclose(watched[e][2][-1].sum(), v.sum()) for e in restitutions)
+spans = [np.ptp(watched[e][1][-1]) for e in restitutions]
 assert spans == sorted(spans)
 
 # %% tags=["hide-input"]
-fig, axes = plt.subplots(3, 1, figsize=(7, 2.6), sharex=True, dpi=100)
-fastest, half = abs(v).max(), max(abs(films[e][1]).max() for e in restitutions) + 2
-patches = {}
+axes = panels(3, height=3.4, sharex=True, sharey=True)
 for ax, e in zip(axes, restitutions, strict=True):
-    patches[e] = [ax.add_patch(Rectangle((0, -1), 2, 2, edgecolor="0.3")) for _ in range(size)]
-    ax.set(xlim=(-half, half), ylim=(-1.6, 1.6), yticks=[], ylabel=f"e = {e}")
-axes[-1].set_xlabel("position x [R]")
-
-
-def show(frame):
-    for e in restitutions:
-        _, x, v = films[e]
-        for patch, centre, velocity in zip(patches[e], x[frame], v[frame], strict=True):
-            patch.set_x(centre - 1)
-            patch.set_facecolor(DIRECTIONS(0.5 + 0.5 * velocity / fastest))
-
-
-played(fig, show, range(len(films[0][0])), a_second=10)
+    spacetime(ax, *watched[e][:2])
+    ax.set_title(f"e = {e}")
+axes[0].set_ylabel("time $t$ [$t_0$]")
+plt.show()
 
 # %% [markdown]
 # <details><summary>Explain</summary>
@@ -389,7 +380,7 @@ for e in (0.8, 0.9, 1, 1.1):
     lost = m / 2 * (np.sum(v**2) - np.sum(v_end**2))
     assert np.isclose(np.sum(solutions.energy_taken(closing, e, m)), lost)
     one = rods.replace(restitution=e)
-    _, _, simulated = film(one, one.physical(y), v, duration=duration, every=duration)
+    _, _, simulated = watch(one, one.physical(y), v, duration=duration, every=duration)
     assert np.allclose(simulated[-1], v_end)
 
 # %% [markdown]
@@ -437,7 +428,7 @@ check(my_places, solutions.pool_adjacent_violators(z), hint=hint, tolerance=1e-3
 answers = {"PAVA": solutions.pool_adjacent_violators(flown)}
 glue = rods.replace(restitution=0)
 for method in methods:
-    _, x, _ = film(glue, glue.physical(y), v, duration=duration, every=duration, method=method)
+    _, x, _ = watch(glue, glue.physical(y), v, duration=duration, every=duration, method=method)
     answers[f"simulate, {method}"] = glue.reduced(x[-1])
 for name, answer in answers.items():
     off = abs(answer - isotonic_regression(flown).x).max()
@@ -494,14 +485,14 @@ check(my_u, solutions.contact_dynamics(np.eye(5)[0], 1), hint=hint, tolerance=2e
 for number in (3, 5):
     hit, chain = np.eye(number)[0], cb.Chain(size=number, **free)
     for method in methods:
-        _, _, velocities = film(chain, chain.anchors, hit, duration=1, every=1, method=method)
+        _, _, velocities = watch(chain, chain.anchors, hit, duration=1, every=1, method=method)
         print(f"{number} rods, {method:16s}: {np.round(velocities[-1], 4)}")
 
 # %% tags=["remove-cell"]
 for number in (3, 5):
     hit, chain = np.eye(number)[0], cb.Chain(size=number, **free)
     ends = {
-        method: film(chain, chain.anchors, hit, duration=1, every=1, method=method)[2][-1]
+        method: watch(chain, chain.anchors, hit, duration=1, every=1, method=method)[2][-1]
         for method in methods
     }
     assert np.allclose(ends["event-driven"], billiard(np.zeros(number), hit, 1, 1)[2])

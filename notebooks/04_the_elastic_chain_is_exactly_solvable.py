@@ -27,10 +27,11 @@
 # Lengths are in rod radii $R$, masses in $M$ (a rod has $m = 4\pi/3\,M$), times in
 # $t_0 = \sqrt{M/k}$. In these units $k = \gamma = A = 1$.
 #
-# *Level: third year. You need: lesson 1, sections 1 to 3; lesson 3, sections 1 and 2; the Gibbs
-# distribution. Time: 90 minutes. To predict before you see the results, type `make lessons` in the
-# folder of the project, and open the copy of this lesson in `build/lessons/`, which has neither
-# outputs nor solutions.*
+# *90 minutes. `make lessons` writes copies without outputs and solutions.*
+#
+# **Two minutes on the page.** <a href="../docs/chain.md#preset=elastic">Do elastic collisions leave
+# a trace?</a> Draw the distribution of the velocities at $e = 1$ that you expect and, on paper, the
+# density. Then set $e = 1$.
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
@@ -157,7 +158,7 @@ kinds = {
 }
 runs = {}
 for name, each in kinds.items():
-    runs[name] = cb.simulate(each, duration=30_000, observe="widths", seed=5, progress=False)
+    runs[name] = cb.simulate(each, duration=15_000, observe="widths", seed=5, progress=False)
 
 # %% tags=["hide-input"]
 ax = panels(width=7, height=3.2)
@@ -233,7 +234,7 @@ draws = 50_000
 numbers = np.random.default_rng(1).standard_normal((draws, size))
 x = solutions.rods_from(numbers, chain)
 y = chain.reduced(x)
-run = cb.simulate(chain, duration=100_000, seed=2, progress=False)
+run = cb.simulate(chain, duration=60_000, seed=2, progress=False)
 exact = cb.equilibrium(chain)
 
 # %% tags=["hide-input"]
@@ -286,6 +287,9 @@ assert cb.deviation(cb.smooth(run), cb.smooth(exact)).maximum_in_errors < 5
 # All three agree. The elastic chain without a gap *is* a sorted list of Gaussian numbers.
 #
 # </details>
+#
+# **Back on the page.** The peaks are about $2R$ apart, and their width grows like $s\propto A$. Draw on
+# paper the density of <a href="../docs/chain.md#size=20&speed=100">20 rods</a> at $A = 4$, then set it.
 #
 # ## 4. One rod
 #
@@ -568,8 +572,8 @@ assert abs(exact_v2.min() / W**2 - 0.54) < 0.01
 #
 # </details>
 #
-# [Lesson 7](07_the_fluid_in_time.ipynb), section 3, looks at this motion as a fluid. With a gap, or
-# for $e \ne 1$, points cannot be relabelled, and this solution in time does not hold.
+# [Lesson 7](07_when_is_a_gas_a_fluid.ipynb), section 1, looks at this motion as a fluid. With a gap,
+# or for $e \ne 1$, points cannot be relabelled, and this solution in time does not hold.
 #
 # ## Exercise
 #

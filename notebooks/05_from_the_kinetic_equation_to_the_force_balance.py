@@ -25,10 +25,11 @@
 # Lengths are in rod radii $R$, masses in $M$ (a rod has $m = \frac{4\pi}{3}M$), times in
 # $t_0=\sqrt{M/k}$. Collisions are elastic, $e=1$, and the anchors of the springs have no gap.
 #
-# *Level: third year. You need: lesson 3, section 1; lesson 4, sections 1 to 4; the pressure of a
-# gas. Time: 90 minutes. To predict before you see the results, type `make lessons` in the folder of
-# the project, and open the copy of this lesson in `build/lessons/`, which has neither outputs nor
-# solutions.*
+# *90 minutes. `make lessons` writes copies without outputs and solutions.*
+#
+# **Two minutes on the page.** Draw on paper the density of
+# <a href="../docs/chain.md#amplitude=3&size=30&speed=100">30 rods</a> that you expect, from the
+# centre to the right end: is it a smooth hill, or does it show the rods?
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
@@ -167,8 +168,8 @@ check(my_slope, lambda *place: solutions.slope(*place, chain), at=places, hint=h
 #
 # ## 4. Theory meets particles
 #
-# **Predict.** Sketch the density of the theory, from the centre to the right end. Then sketch that
-# of a simulation. By how much will they differ?
+# **Predict.** You have seen the density of the rods. Sketch that of the theory over it. By how much
+# will they differ?
 #
 # **Run.** Like the paper, `smooth` averages a density over a rod length.
 
@@ -323,6 +324,10 @@ assert after.maximum_in_errors < 5
 #
 # </details>
 #
+# **Back on the page.** A fluid is right where the layers are gone. Guess the amplitude from which on
+# the density of <a href="../docs/chain.md#amplitude=3&size=30&speed=100">30 rods</a> looks like the
+# hill of the fluid, also at its ends, and look.
+#
 # **You can stop here.** You have derived the force balance of rods, found that it is exact for
 # points, and recovered the measured layers from its smooth density.
 #
@@ -338,7 +343,7 @@ assert after.maximum_in_errors < 5
 
 # %%
 hundred = cb.Chain(size=100, amplitude=10)
-long = cb.simulate(hundred, duration=100_000, replicas=2, seed=1, progress=False)
+long = cb.simulate(hundred, duration=60_000, replicas=2, seed=1, progress=False)
 fit = cb.comparison.fit_arctanh(long)
 closures = {"labels": cb.force_balance(hundred), "fit": cb.force_balance(hundred, fit)}
 for name, theory in closures.items():
@@ -419,8 +424,8 @@ check(my_momentum, solutions.momentum_handed_over, at=pairs, hint=hint)
 #
 # $$(\rho W^2)' = \Pi(r-2R) - \Pi(r) - \frac km\,\rho\,\langle\Delta x\rangle .$$
 #
-# This is the first moment of the kinetic equation ([*The appendix, equation by
-# equation*](paper_the_appendix_equation_by_equation.ipynb) derives it), and it is exact. In
+# This is the first moment of the kinetic equation ([the appendix of the
+# paper](../docs/paper/appendix.md)), and it is exact. In
 # equilibrium the velocities of a pair are independent and Gaussian, so $v-w$ has the variance
 # $2W^2$. Half of all pairs approach. At $e=1$ therefore $\Pi = W^2\rho_2$, where
 # $\rho_2(r, r+2R)$ is the density of contacts.

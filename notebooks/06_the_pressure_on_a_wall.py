@@ -21,23 +21,21 @@
 # hard does it press on a wall? How long is a rod, if the pressure is all that you can measure? And
 # is the gas near a wall the same as far from it?
 #
-# In lesson 5 the pressure of rods, $\rho mW^2/(1-2R\rho)$, came out of a kinetic equation after some
-# approximations. In a box we can measure it.
-#
 # Lengths are in rod radii $R$, so a rod is $2R$ long. The box has the length $X$ from wall to wall.
 # All collisions are elastic, also those with the walls. In one dimension the pressure $P$ is a
 # force: the mean force on a wall.
 #
-# *Level: fourth year; sections 1 to 3 also suit a second year. You need: lesson 1 (section 1), and
-# lesson 5 (sections 1 to 5). Time: 90 minutes. To predict before you see the results, type
-# `make lessons` in the folder of the project, and open the copy of this lesson in
-# `build/lessons/`, which has neither outputs nor solutions.*
+# *90 minutes. `make lessons` writes copies without outputs and solutions.*
+#
+# **Two minutes on the page.** Let the page measure the force of
+# <a href="../docs/chain.md#spring=none&size=20&box=80&second=pressure&speed=100">20 rods in 80
+# R</a>. Guess the force in a box of 60 R, and then set $X = 60$.
 
 # %% tags=["hide-input"]
 import matplotlib.pyplot as plt
 import numpy as np
 from solutions import lesson_06 as solutions
-from teaching import GREEN, PINK, RED, agree, check, panels, safe
+from teaching import GREEN, PINK, RED, agree, check, choose, panels, safe
 
 # %% [markdown]
 # **What you may change.** The number of rods `size`, from 10 to 100 (with more the runs are
@@ -105,12 +103,13 @@ check(my_force, solutions.force_of_a_point, at=points, hint=hint)
 # This is the law of an ideal gas.
 #
 # **Predict.** Make all points twice as heavy and leave $A$ and $\gamma$ as they are. Is the pressure
-# then `"higher"`, `"lower"` or `"equal"`?
+# then higher, lower or equal?
 
 # %%
-my_word = ...  # your code here: "higher", "lower" or "equal"
+my_choice = "..."  # your code here: 1 higher, 2 lower or 3 equal
 
-check(my_word, solutions.TWICE_THE_MASS, hint="Which width W has a heavier point (lesson 1)?")
+hint = "Which width W has a heavier point (lesson 1)?"
+choose(my_choice, "higher", "lower", "equal", right=solutions.TWICE_THE_MASS, hint=hint)
 
 # %% [markdown]
 # **Run.** The observer `walls` adds up the momentum that each wall gets, and divides it by the time.
@@ -118,7 +117,7 @@ check(my_word, solutions.TWICE_THE_MASS, hint="Which width W has a heavier point
 
 
 # %%
-def measured_pressure(chain, duration=300_000, seed=1):
+def measured_pressure(chain, duration=150_000, seed=1):
     """Return the mean force on the two walls, and its standard error."""
     settings = {"duration": duration, "seed": seed, "progress": False}
     run = cb.simulate(chain, observe="walls", **settings)
@@ -146,7 +145,7 @@ for factor in (1, 2):
 # **Predict.** The rods fill half of the box. Is the pressure that of the points in the same box,
 # larger by a half, or twice as large?
 #
-# To find the law, take the rods' own length out, as in lesson 4:
+# To find the law, take the rods' own length out, as in lesson 3, section 2:
 #
 # $$y_i = x_i - 2R\Big(i-\frac{L+1}2\Big).$$
 #
@@ -213,6 +212,8 @@ agree("P over the law of rods", P / law, 1, P_error / law)
 # measure the force on it. (Van der Waals found the size of molecules from pressures in 1873.)
 #
 # **Predict.** Draw $1/P$ against $X$. Which curve is it? Where does it meet the axis $1/P = 0$?
+# **Back on the page** you can test your drawing with
+# <a href="../docs/chain.md#challenge=pressure">three boxes</a>.
 #
 # **Your turn.** Write a function that finds the length of one rod from measured boxes and pressures.
 # It must not use $R$ or $T$. `np.polyfit(x, y, 1)` returns the slope and the constant of the best

@@ -1,4 +1,4 @@
-"""What the lessons share: colours, panels, films, comparisons in words, checked answers.
+"""What the lessons share: colours, panels, comparisons in words, checked answers.
 
 The lessons import this file from their own folder.
 """
@@ -7,9 +7,8 @@ import os
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.animation import FuncAnimation
+from scipy.stats import norm
 
-from crazybilliards.comparison.films import has_ffmpeg
 from crazybilliards.reproduction.claims.study import error_of_mean
 
 BLUE, ORANGE, GREEN, PINK, RED, SKY = COLOURS = (
@@ -27,17 +26,6 @@ def panels(number=1, width=10, height=3.6, **settings):
     """Return the axes of a row of panels; a single panel comes without a list around it."""
     _, axes = plt.subplots(1, number, figsize=(width, height), **settings)
     return axes
-
-
-def played(figure, show, frames, a_second):
-    """Return a film of a figure, in which ``show(frame)`` moves what moves."""
-    from IPython.display import HTML  # a lesson runs in Jupyter
-
-    film = FuncAnimation(figure, show, frames, interval=1000 / a_second)
-    # Pictures with buttons, which need no ffmpeg, are four times as large.
-    player = HTML(film.to_html5_video() if has_ffmpeg() else film.to_jshtml(default_mode="loop"))
-    plt.close(figure)  # or the notebook would also show the last picture
-    return player
 
 
 def mean_and_error(values):
@@ -61,10 +49,12 @@ def safe(condition, sentence):
 
 
 def agree(what, measured, expected, error, unit=""):
-    """Say in words whether measured values agree with expected ones within five standard errors.
+    """Say in words whether measured values agree with expected ones.
 
-    Of arrays the two values that are the farthest apart are told. A disagreement does not stop a
-    lesson, unless the environment variable CRAZYBILLIARDS_LESSONS is "strict".
+    They do up to three standard errors, and from five on they do not. In between one looks again,
+    and is told how often chance takes one of so many values so far. Of arrays the two values that
+    are the farthest apart are told. A disagreement does not stop a lesson, unless the environment
+    variable CRAZYBILLIARDS_LESSONS is "strict".
     """
     all_three = (np.asarray(each, dtype=float) for each in (measured, expected, error))
     measured, expected, error = np.broadcast_arrays(*all_three)
@@ -74,7 +64,10 @@ def agree(what, measured, expected, error, unit=""):
     pull = apart.flat[worst]
     of_all = f"of {apart.size} values the farthest is " if apart.size > 1 else ""
     far = "more than 1000" if pull > 1000 else f"{pull:.1f}"
-    verdict = "they agree" if pull < 5 else "they do not agree"
+    verdict = "they agree" if pull < 3 else "they do not agree"
+    if 3 <= pull < 5:
+        chance = 1 - (1 - 2 * norm.sf(pull)) ** apart.size
+        verdict = f"look again, chance alone does this in {100 * chance:.2g} % of all cases"
     told = (
         f"{what}: {of_all}{measured.flat[worst]:.4g}{unit and ' ' + unit} measured, "
         f"{expected.flat[worst]:.4g}{unit and ' ' + unit} expected, "
@@ -90,6 +83,26 @@ def _insist(condition, sentence):
         assert condition, sentence
 
 
+def choose(answer, *options, right, hint):
+    """Say whether one of the options, or its number, is missing, right, or wrong.
+
+    Whatever else is given, the options are told. A missing answer is ``...``, also in quotes: they
+    make a text of a word that the learner types in place of the dots.
+    """
+    known = {str(number): option for number, option in enumerate(options, start=1)}
+    given = str(answer).strip().casefold()
+    chosen = known.get(given, given)
+    listed = ", ".join(f"{number} {option}" for number, option in known.items())
+    if answer is ... or not given.strip("."):
+        print(f"Your turn: replace the dots by a number, and run the cell again. {listed}.")
+    elif chosen not in options:
+        print(f"The answer is one of these numbers: {listed}.")
+    elif chosen == right:
+        print("Right.")
+    else:
+        print(f"Not yet: you chose {chosen}. Hint: {hint}")
+
+
 def right(answer, expected, *, at=(), tolerance=1e-6):
     """Return whether an answer equals the expected one within a relative tolerance.
 
@@ -101,9 +114,9 @@ def right(answer, expected, *, at=(), tolerance=1e-6):
 def check(answer, expected, *, at=(), hint, tolerance=1e-6, also=()):
     """Say whether an answer is missing, right, or wrong; a wrong one is given a hint.
 
-    A missing answer is ``...``, or a function that returns this. An answer is a number, numbers, a
-    word, or a function of the arguments in ``at``. ``also`` are other right answers. What is said
-    of a wrong answer contains the answer and its direction, and never the expected value.
+    A missing answer is ``...``, or a function that returns this. An answer is a number, numbers, or
+    a function of the arguments in ``at``. ``also`` are other right answers. What is said of a wrong
+    answer contains the answer and its direction, and never the expected value.
     """
     try:
         given = answer(*at[0]) if at else answer
@@ -129,10 +142,6 @@ def _first_wrong(answer, expected, at, tolerance):
         given, wanted = (
             each if arguments is None else each(*arguments) for each in (answer, expected)
         )
-        if isinstance(wanted, str):
-            if str(given).strip().casefold() != wanted.casefold():
-                return f": you have {given!r}"
-            continue
         given, wanted = (np.asarray(each, dtype=float) for each in (given, wanted))
         if given.shape != wanted.shape:
             return f": an answer of the shape {given.shape} must have the shape {wanted.shape}"

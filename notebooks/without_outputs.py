@@ -9,12 +9,14 @@ beside the copies in the package ``solutions``, with which the lessons compare t
 import re
 import shutil
 import sys
+import tomllib
 from pathlib import Path
 
 import nbformat
 
 HERE = Path(__file__).parent
-
+PROJECT = tomllib.loads((HERE.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+PAGES = PROJECT["urls"]["Documentation"]  # a copy lies elsewhere than the pages that it links to
 
 SOLUTION = re.compile(r"<details><summary>Solution</summary>.*?</details>\n*", re.DOTALL)
 
@@ -31,6 +33,7 @@ def for_learners(path):
             cell.outputs, cell.execution_count = [], None
         else:
             cell.source = SOLUTION.sub("", cell.source).strip()
+            cell.source = re.sub(r"\.\./docs/([\w/]+)\.md", rf"{PAGES}\1.html", cell.source)
     notebook.cells = [
         cell
         for cell in notebook.cells

@@ -5,7 +5,7 @@
 Simulations have the default time step. The theory is ``steady_state``, up to 1000 rods. The first
 table has five restitutions. The other two have quantities in the centre at e = 0, and the slopes of
 their logarithms: roots of temperatures over W, the force over k s, the correlation length. Takes an
-hour on one core.
+hour on one core. ``docs/figures/neighbours.py`` draws the first table.
 """
 
 from __future__ import annotations
@@ -15,25 +15,17 @@ from itertools import pairwise, product
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, draw_points
 from crazybilliards.comparison.fits import fit_border_power_law
-from crazybilliards.comparison.layout import entitle, legend_above, panels
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import middle_tenth
-from crazybilliards.reproduction.claims.study import error_of_mean
 from crazybilliards.reproduction.claims.verdicts import Estimate
 from studies.common import Results, Table, carry_out
 
 RESTITUTIONS = (0.95, 0.9, 0.75, 0.5, 0.0)
 DURATIONS = {30: 8000.0, 100: 6000.0, 300: 3000.0, 1000: 1000.0}
 LONGEST, ITS_DURATION = 3000, 300.0  # at e = 0, in simulations only
-SNAPPED = 100  # rods of the chains whose snapshots are kept
-BLOCKS = 16  # of the snapshots in time, whose scatter gives errors
-SEPARATIONS = 14  # that are drawn
 SPECTRA = 100  # drawn at random, for the error of the correlation length
 HEADS = ["L", "$W_v/W$", r"$\sqrt{\Theta}/W$", r"$\sqrt{h_c}/W$", "$P/ks$", r"$\xi$"]
 
@@ -42,8 +34,7 @@ def cases() -> dict[str, Case]:
     found = {}
     chains = [(e, *of_size) for e, of_size in product(RESTITUTIONS, DURATIONS.items())]
     for e, size, duration in [*chains, (0.0, LONGEST, ITS_DURATION)]:
-        chain, raw = Chain(size=size, restitution=e), ["snapshots"] if size == SNAPPED else []
-        observe = ["widths", "covariances", "modes", *raw]
+        chain, observe = Chain(size=size, restitution=e), ["widths", "covariances", "modes"]
         settings = {"duration": duration, "every": 0.5, "observe": observe}
         found[f"rods {e} {size}"] = Case("simulate", chain, settings)
         if size != LONGEST:
@@ -177,43 +168,5 @@ def tables(results: Results) -> dict[str, Table]:
     }
 
 
-def draw(results: Results) -> Figure:
-    figure, axes = panels(1, 3, height=2.6)
-    sizes, (runs, theories) = list(DURATIONS), by_place(results)
-    for number, e in enumerate(RESTITUTIONS):
-        for ax, value in zip(axes, (correlation_length, covariance), strict=False):
-            values, errors = np.transpose([value(runs[e, size]) for size in sizes])
-            draw_points(ax, sizes, values, errors, number=number, label=f"$e = {e:g}$")
-            lines = [value(theories[e, size]).value for size in sizes]
-            ax.plot(sizes, lines, color=COLOURS[number])
-        draw_covariances(axes[2], results[f"rods {e} {SNAPPED}"], number)
-    for ax in axes[:2]:
-        ax.set(xscale="log", xlabel="rods $L$")
-        ax.set_xticks(sizes, [f"{size}" for size in sizes])
-        ax.xaxis.set_minor_formatter("")
-    axes[0].set(yscale="log", ylabel=r"correlation length $\xi$ [rods]")
-    axes[1].set(ylim=(0, 1), ylabel=r"$\langle v_i v_{i+1}\rangle/T$, centre")
-    axes[2].set(ylim=(0, 0.75), xlabel="separation $r$ [rods]")
-    axes[2].set(ylabel=r"$\langle v_i v_{i+r}\rangle/T$, centre")
-    entitle(axes[2], f"$L = {SNAPPED}$")
-    legend_above(figure, axes[0], title="symbols: simulation, lines: theory")
-    return figure
-
-
-def draw_covariances(ax: Axes, run: xr.Dataset, number: int) -> None:
-    """Draw covariances of rods at equal distances from the centre, over their temperatures."""
-    size = run.sizes["particle"]
-    v, widths = run.velocity.values.reshape(-1, size), run.velocity_width.values
-    separations = np.unique(np.geomspace(1, size // 2, SEPARATIONS).astype(int))
-    values, errors = [], []
-    for r in separations:
-        first = np.arange((size - r) // 2 - size // 20, (size - r) // 2 + size // 20 + 1)
-        temperature = (widths[first] * widths[first + r]).mean()
-        products = (v[:, first] * v[:, first + r]).mean(axis=1) / temperature
-        values.append(products.mean())
-        errors.append(error_of_mean([part.mean() for part in np.array_split(products, BLOCKS)]))
-    draw_points(ax, separations, values, errors, number=number)
-
-
 if __name__ == "__main__":
-    carry_out(__doc__, cases(), tables, draw)
+    carry_out(__doc__, cases(), tables)

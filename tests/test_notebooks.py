@@ -15,7 +15,8 @@ from without_outputs import write_copies
 FOLDER = Path(__file__).parents[1] / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 LONGEST_CELL = 15
-MOST_WORDS = 1800
+MOST_WORDS = 1750
+MOST_WORDS_OF_ALL = 14_000
 STOP = "**You can stop here.**"
 OF_A_MACHINE = re.compile(r"(?<![\w.])/(?:home|Users|root|tmp|var/folders)\b|[A-Za-z]:\\+Users\b")
 
@@ -31,9 +32,13 @@ def tags(cell):
     return cell.metadata.get("tags", [])
 
 
-def is_for_a_class(path):
-    """Tell lessons from notebooks for readers of the paper: by their number."""
-    return path.name[0].isdigit()
+def text_of(notebook):
+    return "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
+
+
+def judged(cell):
+    """Return whether the answer of a task is judged in a cell of code."""
+    return any(line.startswith(("check(", "choose(")) for line in cell.source.splitlines())
 
 
 def test_a_notebook_is_its_script_and_in_the_list_of_lessons(lesson):
@@ -42,8 +47,7 @@ def test_a_notebook_is_its_script_and_in_the_list_of_lessons(lesson):
     cells, expected = ([(c.cell_type, c.source, tags(c)) for c in each.cells] for each in both)
     assert cells == expected
     table = (FOLDER.parent / "docs" / "notebooks.md").read_text(encoding="utf-8")
-    number = rf"{int(name[:2])}\. " if name[0].isdigit() else ""
-    assert re.search(rf"\n\| \[{number}[A-Z].*\]\(\.\./notebooks/{name}\) \|", table)
+    assert re.search(rf"\n\| \[{int(name[:2])}\. [A-Z].*\]\(\.\./notebooks/{name}\) \|", table)
 
 
 def test_outputs_belong_to_the_code(lesson):
@@ -66,7 +70,7 @@ def test_the_plan_of_a_course_has_all_lessons_in_order_and_their_stops():
     row = r"^\| \[(\d+)\. .*\]\(\.\./notebooks/(\d+)_.*\) \|.*\| (\d+) \| (\d+) \|"
     rows = [tuple(map(int, each)) for each in re.findall(row, plan, re.MULTILINE)]
     expected = []
-    for path in filter(is_for_a_class, NOTEBOOKS):
+    for path in NOTEBOOKS:
         before, _ = path.with_suffix(".py").read_text(encoding="utf-8").split(STOP)
         stop = re.findall(r"^# ## (\d+)\. ", before, re.MULTILINE)[-1]
         expected.append((int(path.stem[:2]), int(path.stem[:2]), 90, int(stop)))
@@ -85,34 +89,36 @@ def test_what_a_student_sees(lesson):
     lines = [line for cell in cells for line in cell]
     assert any("your code here" in line for line in lines)
     assert "import crazybilliards as cb" in lines
-    assert any(line.startswith("check(") for line in lines)
-    text = "\n".join(cell.source for cell in script.cells if cell.cell_type == "markdown")
+    text = text_of(script)
     assert 0 < text.count("<details>") == text.count("</details>")
     assert 0 < text.count("**Predict") <= text.count("**Run")
     assert "hint=" in "\n".join(lines)
     assert "**Explain" not in text  # it would give the answer away: <details> folds it
     assert text.split("\n## ")[0].count("`make lessons`") == 1  # which has no outputs
+    begun, later = text.split("**Back on the page")
+    for part, name in ((begun, "**Two minutes on the page.**"), (later, "")):
+        assert name in part
+        assert part.count('<a href="../docs/chain.md#') == 1
 
 
 def test_a_lesson_fits_ninety_minutes(lesson):
-    """A minute for a hundred words of comments and four for each answer; one place to stop."""
-    name, _, script = lesson
-    if not is_for_a_class(FOLDER / name):
-        pytest.skip("not a lesson of ninety minutes")
-    lines = (FOLDER / name).with_suffix(".py").read_text(encoding="utf-8").splitlines()
-    lines = lines[lines.index("# ---", 1) + 1 :]  # behind the header of jupytext
-    comments = [line for line in lines if line.startswith("#") and not line.startswith("# %%")]
-    words = sum(len(line.split()) for line in comments)
-    code = [cell.source for cell in script.cells if cell.cell_type == "code"]
-    answers = sum(any(line.startswith("check(") for line in cell.splitlines()) for cell in code)
+    """A minute for a hundred words of text and four for each answer; one place to stop."""
+    _, _, script = lesson
+    text = text_of(script)
+    code = [cell for cell in script.cells if cell.cell_type == "code"]
+    words, answers = len(text.split()), sum(map(judged, code))
     assert words <= MOST_WORDS
     assert answers >= 3
     assert words / 100 + 4 * answers <= 90
-    text = [cell.source for cell in script.cells if cell.cell_type == "markdown"]
-    stops = [line for cell in text for line in cell.splitlines() if line.startswith(STOP)]
+    stops = [line for line in text.splitlines() if line.startswith(STOP)]
     assert len(stops) == 1
     assert len(stops[0]) > len(STOP) + 20, "say what one has by then"
-    assert "Time: 90 minutes" in re.sub(r"\s+", " ", text[0])
+    assert "\n*90 minutes." in text
+
+
+def test_all_lessons_together_are_short():
+    books = [jupytext.read(path) for path in NOTEBOOKS]
+    assert sum(len(text_of(book).split()) for book in books) <= MOST_WORDS_OF_ALL
 
 
 def global_names(cells):
@@ -167,6 +173,7 @@ def test_copies_have_no_outputs_and_no_solutions_and_keep_answers(tmp_path, caps
         ]
         text = "\n".join(cell.source for cell in copy.cells)
         assert "Solution</summary>" not in text
+        assert "../docs/" not in text
         assert not [answer for answer in answers if answer in plain(text)]
         assert not any(cell.get("outputs") or cell.get("execution_count") for cell in copy.cells)
     answered = tmp_path / NOTEBOOKS[0].name

@@ -3,12 +3,16 @@
 Sphinx checks the links of the documentation.
 """
 
+import os
 import re
+import subprocess
+import sys
 from html import escape
 from pkgutil import resolve_name
 
 import jupytext
 import pandas as pd
+import pytest
 import qr_code
 from installation import FOLDERS, ROOT
 
@@ -98,6 +102,15 @@ def test_the_draft_of_the_paper_cites_what_its_bibliography_holds():
     assert sorted(set(cited)) == sorted(entries)
 
 
+@pytest.mark.validate
+def test_the_sixty_lines_give_what_their_page_says(tmp_path):
+    script, settings = ROOT / "docs/paper/sixty_lines.py", {**os.environ, "MPLBACKEND": "agg"}
+    command = [sys.executable, script]
+    run = subprocess.run(command, cwd=tmp_path, env=settings, capture_output=True, text=True)
+    assert 0.03 < float(re.findall(r"at most (\S+) of close packing", run.stdout)[0]) < 0.045
+    assert (tmp_path / "sixty_lines.png").exists()
+
+
 # -- the concordance --------------------------------------------------------------------------
 
 CONCORDANCE = (ROOT / "docs/paper/concordance.md").read_text(encoding="utf-8")
@@ -129,16 +142,29 @@ def test_the_concordance_has_every_equation_and_figure():
     assert names == [figure.name for figure in FIGURES]
 
 
-def test_links_to_settings_of_the_chain_name_its_parameters():
+def test_links_to_settings_of_the_chain_name_what_it_has():
     """Sphinx does not check an address with a setting, chain.html#size=2."""
-    pages = "".join(path.read_text(encoding="utf-8") for path in PAGES)
-    settings = re.findall(r'href="chain\.html#([^"]*)"', pages)
-    names = {part.split("=")[0] for text in settings for part in re.split("&amp;|&", text)}
-    assert names
-    assert names <= cb.Chain().parameters().keys()
+    page = (ROOT / "apps/explore/page/chain.html").read_text(encoding="utf-8")
+    texts = "".join(path.read_text(encoding="utf-8") for path in PAGES + LESSONS)
+    settings = re.findall(r'href="(?:chain\.html|\.\./docs/chain\.md)#([^"]*)"', texts)
+    given = [part.split("=") for text in settings for part in re.split("&amp;|&", text)]
+    assert given
+    for name, value in given:
+        is_one_of = {"challenge": f'"challenge-{value}"', "preset": f'value="{value}"'}
+        assert is_one_of.get(name, f'data-chain="{name}"') in page, (name, value)
 
 
 def test_the_qr_code_leads_to_the_documentation_that_the_project_names():
     """If it does not, draw it again: python docs/figures/qr_code.py."""
     picture = (ROOT / "docs/figures/qr_code.svg").read_text(encoding="utf-8")
     assert f"<title>{escape(qr_code.address())}</title>" in picture
+
+
+@pytest.mark.compiled
+def test_the_script_of_the_readme_draws_its_picture(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    [script] = re.findall(
+        r"```python\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL
+    )
+    exec(script, {})
+    assert (tmp_path / "density.png").read_bytes().startswith(b"\x89PNG")

@@ -4,7 +4,7 @@ Run it to write measured.png beside it, and to print how far the densities are a
 three chains, which takes ten seconds.
 """
 
-from pathlib import Path
+from small_files import save
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.distances import deviation
@@ -37,7 +37,7 @@ def main() -> None:
             ax.set_xlim(-180, 180)
             ax.label_outer()
         legend_above(figure, axes[0])
-        figure.savefig(Path(__file__).with_suffix(".png"))
+        save(figure, "measured.png")
 
 
 if __name__ == "__main__":

@@ -1,20 +1,35 @@
-"""Answers to the tasks of lesson 7, The fluid in time."""
+"""Answers to the tasks of lesson 7, When is a gas a fluid?"""
 
 import numpy as np
 
 OVERSHOOTS = "isothermal"
+RELEASED = "spread"
 
 
-def heat_rate(sigma, sigma_rate, heat, heat_at_rest, friction):
+def heat_rate(sigma, sigma_rate, heat, chain):
     """Return the change of W^2 in time in a cloud of width sigma."""
-    return -2 * heat * sigma_rate / sigma - 2 * friction * (heat - heat_at_rest)
+    exchanged = 2 * chain.damping / chain.mass * (heat - chain.free_velocity_width**2)
+    return -2 * heat * sigma_rate / sigma - exchanged
 
 
-def mean_places(points):
-    """Return the mean places of rods 1 to L from independent points, shape (copies, L)."""
-    return np.sort(points, axis=1).mean(axis=0)
+def mirrored(y, low, high):
+    """Return the place of a point between two mirrors, from where it would be without them."""
+    room = high - low
+    way = np.mod(y - low, 2 * room)
+    return low + np.minimum(way, 2 * room - way)
 
 
-def sound_speed(density, W, radius):
-    """Return the isothermal speed of sound of hard rods."""
-    return W / (1 - 2 * radius * density)
+def wave_matrix(friction, heat):
+    """Return the matrix of density, velocity and temperature of a wave; rates in kappa W."""
+    return np.array([[0, -1, 0], [1, -friction, 1], [0, -2, -2 * heat]])
+
+
+def collision(v1, v2, m1, m2):
+    """Return both velocities after an elastic collision."""
+    centre = (m1 * v1 + m2 * v2) / (m1 + m2)
+    return 2 * centre - v1, 2 * centre - v2
+
+
+def damped_wave(t, omega, beta):
+    """Return a damped wave that begins at 1 with the slope 0."""
+    return np.exp(-beta * t) * (np.cos(omega * t) + beta / omega * np.sin(omega * t))

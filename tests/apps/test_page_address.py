@@ -29,7 +29,7 @@ LOOK = """
 const value = (name) => document.querySelector(`[data-chain="${name}"]`).value;
 const said = (name) => document.querySelector(`[data-chain="${name}"]`).textContent;
 const shown = () => {
-  const names = ['preset', 'rod', 'speed', 'first-picture', 'second-picture'];
+  const names = ['preset', 'speed', 'first-picture', 'second-picture'];
   const pressed = [...document.querySelectorAll('[aria-pressed]')].map((each) => each.ariaPressed);
   return [...[...names, ...ChainAddress.NAMES].map(value), ...pressed, said('ask'), said('answer'),
     JSON.stringify(ChainRunning.world.state.chain)];
@@ -37,7 +37,7 @@ const shown = () => {
 const named = () => {
   const { chain } = ChainRunning.world.state;
   const whole = [...ChainChallenges.list, ...ChainPresets.list];
-  const now = {...chain, rod: value('rod'), speed: value('speed'),
+  const now = {...chain, speed: value('speed'),
     first: value('first-picture'), second: value('second-picture')};
   const id = location.hash.match(/(challenge|preset)=(\\w+)/)?.[2];
   const begun = ChainAddress.beginning(whole.find((each) => each.id === id) ?? {});
@@ -50,7 +50,7 @@ const named = () => {
 EVERYTHING = f"""{LOOK}
 const wanted = arguments[0], found = [];
 const elsewhere = '#size=3&restitution=0.5&amplitude=2&damping=2&gap=1.5&spring=quadratic&box=100'
-  + '&mass_ratio=10&rod=3&first=velocities&second=energy&speed=30';
+  + '&mass_ratio=10&first=velocities&second=energy&speed=30';
 for (const control of {ALL}) {{
   const name = control.dataset.chain ?? control.ariaLabel ?? control.textContent;
   if (!control.checkVisibility() || !name.match(wanted)) continue;
@@ -72,8 +72,8 @@ return found;
     ("beginning", "wanted", "number"),
     [
         ("challenge=push", "^(challenge|preset|reveal|restart)", 17),
-        ("challenge=push&size=4&speed=30", "^(?!challenge|preset)", 48),
-        ("challenge=maxwell&size=4", "^(spring|size|box|mass|rod|speed)", 18),
+        ("challenge=push&size=4&speed=30", "^(?!challenge|preset)", 47),
+        ("challenge=maxwell&size=4", "^(spring|size|box|mass|speed)", 18),
     ],
 )
 def test_whatever_is_clicked_is_in_the_address(browser, address, beginning, wanted, number):
@@ -133,7 +133,6 @@ def test_an_address_that_is_not_understood_says_why(browser, address):
         ("foo", "foo is not of the form name=value"),
         ("size=20.5", "size must be a whole number from 2 to 200, got 20.5"),
         ("size=", "size must be a whole number from 2 to 200, got nothing"),
-        ("size=20&rod=21", "rod must be a whole number from 1 to 20, got 21"),
         ("size=20&size=30", "size is given twice"),
         ("gap=<b>", "gap must be a number from 0 to 5 with at most 3 decimals, got <b>"),
         ("speed=4", "speed must be 0.3 or 3 or 30 or 100 or 300, got 4"),
@@ -147,27 +146,6 @@ def test_an_address_that_is_not_understood_says_why(browser, address):
         note = text(browser, "note")
         assert reason in note
         assert re.fullmatch(r"The address is not understood: .*\.", note)
-
-
-def test_a_rod_that_is_not_there_leaves_the_box_and_is_not_pushed(browser, address):
-    visit(browser, address + "#challenge=push&rod=5", "narrow", quiet=True)
-    box = control(browser, "rod")
-    look = "return [Array.from(ChainRunning.world.state.v), arguments[0].value, location.hash]"
-    before = browser.execute_script(look, box)
-    assert before[1:] == ["5", "#challenge=push&rod=5"]
-    for rod in ("999", "", "-3", "2.5", "0"):
-        box.send_keys("\ue009a\ue000\ue003" + rod)  # all is deleted, then typed
-        if rod == "999":
-            press(browser, control(browser, "push"))
-        else:
-            box.send_keys("\ue007")
-        reason = f"There is no rod {rod or 'without a number'}: the rods have the numbers 1 to 20."
-        assert text(browser, "note") == reason
-        assert browser.execute_script(look, box) == before
-    turn(browser, "#size=60&rod=50")
-    slide(browser, size=20)  # of a shorter chain it is the last
-    assert control(browser, "rod").get_attribute("value") == "20"
-    assert browser.current_url.endswith("#size=20&rod=20")
 
 
 # -- what is broken off ------------------------------------------------------------------------
@@ -227,7 +205,7 @@ def test_every_control_that_breaks_something_off_says_so_and_why(browser, addres
             assert "broke off" not in note, name
         else:
             why = f"The {label} changed" if label else "A chain was begun anew"
-            why = "Rod 1 was pushed" if name == "push" else why
+            why = "The left end was pushed" if name == "push" else why
             assert note == f"{why}, which broke off {process}.", name
     assert errors(browser) == []
 

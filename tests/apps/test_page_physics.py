@@ -7,11 +7,10 @@ from itertools import product
 import numpy as np
 import pytest
 from browser import errors
-from driven_page import control, rows, slide, text, turn, visit
+from driven_page import control, rows, show, slide, text, turn, visit
 
 import crazybilliards as cb
 from crazybilliards.comparison.coverage import coverage_density
-from crazybilliards.kinetic.gas.criticality import weak_damping_growth_rate
 from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally
 from crazybilliards.particles.laws.law import EXACT, make_scratch
@@ -44,7 +43,7 @@ GROWTH = """
 const [chain, rate] = arguments, { world } = ChainRunning;
 ChainRunning.begin(chain);
 world.history = Array.from({length: 50}, (_, k) => [k, 5 * Math.exp(rate * k)]);
-return ChainRunning.growthRates();
+return ChainRunning.growthRate();
 """
 COVERED = """
 const found = ChainMeasuring.exactCoverage(...arguments);
@@ -127,13 +126,10 @@ def test_scales_and_steps_have_the_numbers_of_the_package(page):
     np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-9)
 
 
-@pytest.mark.parametrize("known", [{}, {"size": 29}, {"size": 36}, {"damping": 0.6}, {"gap": 0.1}])
-def test_the_growth_is_found_and_that_of_the_theory_where_it_holds(page, known):
-    """Not for few rods, fast growth, chains near the critical size, or with a gap."""
-    chain = cb.Chain(**{"size": 34, "restitution": 1.03, "damping": 0.3} | known)
-    found = page.execute_script(GROWTH, asdict(chain), 0.07)
-    theory = None if known else pytest.approx(weak_damping_growth_rate(chain))
-    assert found == {"found": pytest.approx(0.07), "theory": theory}
+def test_the_growth_is_found(page):
+    assert page.execute_script(GROWTH, asdict(cb.Chain(size=34, restitution=1.03)), 0.07) == (
+        pytest.approx(0.07)
+    )
 
 
 def test_noise_is_normal_and_white(page):
@@ -216,6 +212,7 @@ def test_a_challenge_of_the_gas_is_solved_and_then_answered(
     visit(browser, f"{address}#challenge={name}", "narrow", quiet=True)
     assert not control(browser, "damping").is_displayed()
     assert not control(browser, "push").is_displayed()
+    show(browser)
     [(parameter, series)] = values.items()
     for value in series:
         assert text(browser, "answer") == ""
@@ -230,7 +227,7 @@ def test_the_gauge_is_beside_the_exact_force_and_the_box_holds_its_rods(browser,
     visit(browser, address + "#spring=none&size=20&box=60&mass_ratio=3&speed=100", quiet=True)
     rows(browser, 3000)
     gauge = text(browser, "gauge")
-    numbers = re.search(r": ([\d.]+) ± ([\d.]+), exact: L T/\(X \S 2RL\) = ([\d.]+)\.", gauge)
+    numbers = re.search(r"mean ([\d.]+) ± ([\d.]+), exact: L T/\(X \S 2RL\) = ([\d.]+)\.", gauge)
     force, error, law = (float(number) for number in numbers.groups())
     assert abs(force - law) < 5 * error < 0.1 * law
     slide(browser, size=200)
@@ -247,5 +244,6 @@ def test_a_question_is_not_judged_on_a_chain_that_it_is_not_about(browser, addre
     ):
         turn(browser, f"#challenge={setting}&speed=300")
         slide(browser, spring=spring)
+        show(browser)
         assert reason in rows(browser, 1500)
         assert text(browser, "answer") == ""

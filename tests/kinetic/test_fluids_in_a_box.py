@@ -34,6 +34,7 @@ def test_without_gap_the_points_and_their_pressure_are_exact(spring):
     chain = in_a_box(5.0, spring=spring)
     found, exact = force_balance(chain), equilibrium(chain)
     np.testing.assert_allclose(found.wall_force, exact.wall_force, rtol=1e-8)
+    assert found.attrs["wall_force_model_error"] == 0
     if spring == "linear":
         s = chain.thermal_length
         places = truncnorm(-2.5 / s, 2.5 / s, scale=s).ppf((np.arange(20) + 0.5) / 20)

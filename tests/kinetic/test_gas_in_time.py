@@ -137,6 +137,8 @@ def test_in_the_steady_state_heat_flows_to_where_collisions_take_it():
     assert np.abs(slope - (given - taken)[inside]).max() < 0.01 * unit
     assert (given - taken)[inside].max() - (given - taken)[inside].min() > 0.1 * unit
     assert float(end.heat_flux[inside & (end.x.values > 0)].max()) < 0
+    with pytest.warns(UserWarning, match="its heat_flux is not read"):
+        hydrodynamics(chain, end, 0.1, every=0.1, **EVOLVING)
 
 
 @pytest.mark.compiled

@@ -6,7 +6,7 @@ const ChainAddress = (() => {
   const SPRINGS = { size: 100, restitution: 1, amplitude: 1, damping: 1, gap: 0, spring: "linear" };
   const USUAL = { ...SPRINGS, box: 80, mass_ratio: 1 };
   const NAMES = Object.keys(USUAL), SPRUNG = Object.keys(SPRINGS); // of all chains, of those on springs
-  const SHOWN = { rod: 1, first: "density", second: "widths", speed: 3 };
+  const SHOWN = { first: "density", second: "widths", speed: 3 };
 
   /* Whatever was chosen, as it begins: the chain and what is shown of it, by name. */
   function beginning({ chain, pictures = [SHOWN.first, SHOWN.second], speed = SHOWN.speed }) {

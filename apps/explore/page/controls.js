@@ -14,7 +14,7 @@
   const stage = new ChainDrawing.Stage(find("stage")), shown = find("stage").ariaLabel;
   const solved = new Set(history.state?.solved); // challenges that are done, presets whose answer was seen
   const SYMBOLS = { size: "L", restitution: "e", amplitude: "A", damping: "γ", gap: "g" };
-  let chosen = OWN, rod = 1, judging = false, described = 0;
+  let chosen = OWN, judging = false, described = 0;
   let guess = null; // what is expected of the question: {values, at, shown}
   const hidden = () => guess !== null && !guess.shown, predicted = () => guess?.values.every((each) => each !== null);
 
@@ -49,9 +49,9 @@
 
   /* Say how far the prediction is from what is measured, once the chain is as the question asks. */
   function compare({ seen, drawn: [left, right] }) {
-    const { then = {}, of = "measured", y } = chosen.predict, { chain } = world.state, { settled } = world.measurement;
+    const { then = {}, of, y } = chosen.predict, { chain } = world.state, { settled } = world.measurement;
     const other = Object.entries(then).filter(([name, value]) => chain[name] !== value);
-    const points = (seen[of] ?? []).map(([x, value]) => [(x - left) / (right - left), value]);
+    const points = (seen[of] ?? seen.measured ?? seen.middle ?? []).map(([x, value]) => [(x - left) / (right - left), value]);
     find("compared").textContent = !predicted() ? ""
       : other.length ? `Your curve is for ${other.map(([name, value]) => `${SYMBOLS[name]} = ${value}`).join(", ")}.`
         : settled || world.ranAway ? ChainPredicting.distance(guess, points, y[0] < 0) : "";
@@ -91,11 +91,14 @@
   /* Let the challenge look, and say what it found; only that it is done is read aloud. */
   function judge() {
     judging = false;
-    if (hidden()) find("said").textContent = "";
-    if (!chosen.watch || world.hand || hidden()) return; // a rod in the hand does not move by itself
+    if (!chosen.watch || world.hand) return; // a rod in the hand does not move by itself
     const gas = P.isGas(chosen.chain);
     if (gas !== P.isGas(world.state.chain)) {
       find("said").textContent = `This question is about ${gas ? "a gas in a box" : "rods on springs"}.`;
+      return;
+    }
+    if (hidden()) {
+      find("said").textContent = "";
       return;
     }
     const { done, said, pending } = chosen.watch(world), mark = find(`challenge-${chosen.id}`);
@@ -156,7 +159,6 @@
     find("ask").textContent = what.ask;
     for (const name of ["said", "announced", "compared"]) find(name).textContent = "";
     for (const [name, list] of Object.entries(pictures)) list.value = begun[name];
-    rod = begun.rod;
     world.pushes = [];
     world.forces = [];
     what.begin?.();
@@ -176,8 +178,6 @@
       const name = value.dataset.value;
       sliders[name].ariaValueText = value.textContent = chain[name];
     }
-    find("rod").max = chain.size;
-    find("rod").value = rod = Math.min(rod, chain.size);
     for (const list of Object.values(pictures)) {
       for (const option of list.options)
         if (option.dataset.of) option.disabled = option.hidden = gas !== (option.dataset.of === "gas");
@@ -208,7 +208,7 @@
   function write() {
     const { first, second } = pictures, shown = { first: first.value, second: second.value, speed: world.speed };
     const prediction = predicted() && guess.values.join("_");
-    ChainAddress.write(chosen, { ...world.state.chain, rod, ...shown, prediction }, [...solved]);
+    ChainAddress.write(chosen, { ...world.state.chain, ...shown, prediction }, [...solved]);
   }
 
   /* Begin what the address asks for; say why it is refused. */
@@ -216,7 +216,7 @@
     const options = (list) => ({ options: list.map(({ id }) => ({ value: id })) });
     const asked = ChainAddress.read({
       challenge: options(CHALLENGES), preset: options(PRESETS), ...sliders,
-      rod: { min: 1, max: sliders.size.max, step: "1" }, ...pictures, speed: find("speed"),
+      ...pictures, speed: find("speed"),
       prediction: { numbers: true },
     });
     if (asked?.values) {
@@ -225,11 +225,10 @@
       const begun = { ...ChainAddress.beginning(what), ...values }, { box: room, speed } = ChainAddress.roomy(begun);
       if (P.isGas(begun) && begun.box < P.narrowest(begun)) values.box ??= room;
       if (P.isGas(begun) && what === OWN) values.speed ??= speed;
-      const { rod: named, ...chain } = { ...begun, ...values }, { size, box } = chain;
+      const { size, box, ...chain } = { ...begun, ...values };
       const numbers = what.predict ? ChainPredicting.blank(what).values.length : 0;
-      if (named > size) asked.refused = `rod must be a whole number from 1 to ${size}, got ${named}`;
-      else if (box < P.narrowest(chain))
-        asked.refused = `${size} rods need a box of at least ${P.narrowest(chain)} R, got ${box}`;
+      if (box < P.narrowest({ size, ...chain }))
+        asked.refused = `${size} rods need a box of at least ${P.narrowest({ size, ...chain })} R, got ${box}`;
       else if (values.prediction && values.prediction.length !== numbers)
         asked.refused = numbers ? `prediction must be ${numbers} numbers here, got ${values.prediction.length}`
           : "a prediction belongs to a challenge or a question";
@@ -249,21 +248,11 @@
       : "No rods have met.";
   }
 
-  /* Take the rod of the box, and return whether there is one; otherwise say which there are. */
-  function takeRod() {
-    const box = find("rod"), valid = box.checkValidity();
-    if (valid) rod = box.valueAsNumber;
-    else note(`There is no rod ${box.value || "without a number"}: the rods have the numbers 1 to ${box.max}.`);
-    box.value = rod;
-    return valid;
-  }
-
   function push() {
     if (world.state.masses) return; // the rods of a gas are not pushed
     note("");
-    if (!takeRod()) return;
-    breakOff(`Rod ${rod} was pushed`);
-    R.push(rod - 1, chosen.calm);
+    breakOff("The left end was pushed");
+    R.push(0, chosen.calm);
     touched();
   }
 
@@ -278,8 +267,6 @@
       step, push, reveal, restart: () => choose(chosen, chosen === OWN ? world.state.chain : {}, guess),
     };
     for (const [name, act] of Object.entries(clicks)) find(name).addEventListener("click", act);
-    // Whoever presses the button is told by it, and pushes no other rod.
-    find("rod").addEventListener("change", () => find("push").matches(":active") || takeRod());
     find("speed").addEventListener("change", ({ target }) => setSpeed(Number(target.value)));
     find("preset").addEventListener("change", ({ target }) => choose(PRESETS.find(({ id }) => id === target.value)));
     for (const name of NAMES) sliders[name].addEventListener("input", () => slide(name));

@@ -297,7 +297,7 @@ const ChainPlots = (() => {
       const of = inUnits === "W" ? "that of free rods" : "that of free rods at A = 1";
       const plot = new Plot(canvas, colour, {
         x: last > 0 ? [points[0][0], points[last][0]] : [0, 1], y: [Math.min(-1, ...ys), Math.max(1, ...ys) + 0.2],
-        xTitle: "time t [t₀]", yTitle: `energy / ${of}`, powers: true,
+        xTitle: "time since the last change [t₀]", yTitle: `energy / ${of}`, powers: true,
       });
       plot.line(points, "measured", [1, 0]);
       if (last < 1) return "Energy: not measured yet.";

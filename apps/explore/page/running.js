@@ -14,11 +14,11 @@ const ChainRunning = (() => {
   const GAUGED = 10; // blocks after which the force on the walls is kept
   const GROWN = 10; // times the energy of free rods: beyond, noise hardly counts
 
-  // `touched`: the energy after the last touch. `met`: the contacts that have closed in the last row.
+  // `touched`: the energy after the last touch, `since` when it was. `met`: the contacts that have closed in the last row.
   // `forces`: {chain, value, error} of the force on the walls of the gas in several boxes.
   const world = {
     state: null, measurement: null, speed: SEEN, pushes: [], pushed: null, ranAway: false, growth: 1, touched: 0,
-    history: [], met: [], forces: [],
+    since: 0, history: [], met: [], forces: [],
   };
   let stage = null, seed = 0, stride = 1, skipped = 0, before = new Set();
 
@@ -68,7 +68,8 @@ const ChainRunning = (() => {
     const energy = laws().energy(world.state);
     world.touched = Math.max(energy, freeEnergy());
     world.growth = energy / freeEnergy();
-    world.history = [[world.state.time, world.growth, 0]];
+    world.since = world.state.time;
+    world.history = [[0, world.growth, 0]];
     stride = 1;
     if (!sameChain) stage.restart(world.state.chain);
   }
@@ -108,7 +109,7 @@ const ChainRunning = (() => {
     if (++skipped < stride) return;
     skipped = 0;
     const { time, collisions, hits } = world.state;
-    world.history.push([time, world.growth, collisions + (hits?.[0] ?? 0)]);
+    world.history.push([time - world.since, world.growth, collisions + (hits?.[0] ?? 0)]);
     if (world.history.length <= KEPT) return;
     world.history = world.history.filter((_, k) => k % 2 === 0);
     stride *= 2;
@@ -172,17 +173,13 @@ const ChainRunning = (() => {
     else changed(true);
   }
 
-  /* Above e = 1: the rate at which the energy has grown, by least squares, and where simulations confirm
-     it to 5 % that of kinetic/gas/criticality.py. */
-  function growthRates() {
-    const points = world.history.filter(([, growth]) => growth > GROWN), n = points.length, { chain } = world.state;
-    if (n < 5 || chain.spring !== "linear") return null;
+  /* Above e = 1: the rate at which the energy has grown, by least squares. */
+  function growthRate() {
+    const points = world.history.filter(([, growth]) => growth > GROWN), n = points.length;
+    if (n < 5 || world.state.chain.spring !== "linear") return null;
     const mean = (of) => points.reduce((sum, point) => sum + of(point), 0) / n;
     const t = mean(([time]) => time), log = mean(([, growth]) => Math.log(growth));
-    const found = mean(([time, growth]) => (time - t) * (Math.log(growth) - log)) / mean(([time]) => (time - t) ** 2);
-    const { restitution: e, damping, size } = chain, gain = ((e * e - 1) * size) / 2;
-    const holds = chain.gap === 0 && size >= Math.max(30, 1.5 * criticalSize(chain)) && gain <= 1.05;
-    return { found, theory: holds ? (gain / Math.PI) * Math.sqrt(P.STIFFNESS / P.MASS) - damping / P.MASS : null };
+    return mean(([time, growth]) => (time - t) * (Math.log(growth) - log)) / mean(([time]) => (time - t) ** 2);
   }
 
   /* The longest weakly damped chain that does not run away, to first order in e - 1. */
@@ -200,13 +197,12 @@ const ChainRunning = (() => {
   }
 
   function growth() {
-    const { found, theory } = growthRates() || {}, exponential = (rate) => `exp(${rate.toPrecision(2)} t/t₀)`;
-    if (!found) return "";
-    return `, like ${exponential(found)}${theory ? `; theory for weak damping: ${exponential(theory)}` : ""}`;
+    const rate = growthRate();
+    return rate ? `, like exp(${rate.toPrecision(2)} t/t₀)` : "";
   }
 
   return {
-    world, unit, begin, change, goOn, step, push, setSpeed, take, letGo, growthRates, criticalSize, happening,
+    world, unit, begin, change, goOn, step, push, setSpeed, take, letGo, growthRate, criticalSize, happening,
     ROWS_A_SECOND, GAUGED, showOn: (shown) => { stage = shown; },
   };
 })();
