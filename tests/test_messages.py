@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 import pytest
 import xarray as xr
+from refused_theories import REFUSED
 from wrong_calls import GAMMA, WRONG_CALLS, WRONG_SWEEPS
 
 import crazybilliards as cb
@@ -49,9 +50,17 @@ def names():
     chain = cb.Chain(size=5)
     raw = {"duration": 10, "average": "ensemble", "observe": "snapshots", "progress": False}
     exact, moved = cb.equilibrium(chain), cb.displaced(chain, 1.0)
-    crystal = cb.equilibrium(cb.Chain(size=20))
-    return {
+    twenty = cb.Chain(size=20)
+    crystal, narrow = cb.equilibrium(twenty), cb.compressed(twenty, 0.02)
+    speed = -30 * twenty.free_velocity_width * np.sign(narrow.x)
+
+    def flow(start=moved, chain=chain, duration=10, **settings):
+        cb.hydrodynamics(chain, start, duration, progress=False, **settings)
+
+    theories = {name: getattr(cb.kinetic, name) for name in cb.kinetic.__all__}
+    return theories | {
         "cb": cb,
+        "Chain": cb.Chain,
         "np": np,
         "xr": xr,
         "km": partial(Quantity, name="unit"),
@@ -68,10 +77,20 @@ def names():
         "exact": exact,
         "walls": cb.equilibrium(chain.replace(box=12)),
         "crystal": crystal,
-        "bulged": crystal.assign(velocity_width=2 - crystal.normalized_particle**2),
+        "at_rest": cb.force_balance,
+        "rest": cb.force_balance(chain),
+        "hot": {"velocity_variance": "evolving"},
+        "boxed": cb.Chain(size=5, amplitude=5, box=30),
+        "lossy": cb.Chain(size=300, restitution=0.9),
+        "twenty": twenty,
+        "thirty": cb.Chain(size=30, restitution=0.9),
+        "wide": cb.Chain(size=100),
+        "dense": cb.Chain(size=20_000),
+        "inward": narrow.assign(flow_velocity=speed),
+        "flow": flow,
         "run": cb.simulate(chain, duration=100, progress=False),
         "second": cb.simulate(chain, duration=100, progress=False, seed=1),
-        "boxed": cb.simulate(chain.replace(box=12), duration=100, progress=False),
+        "run_in_a_box": cb.simulate(chain.replace(box=12), duration=100, progress=False),
         "snapshots": cb.simulate(chain, **raw),
         "start": cb.given_start(chain, chain.anchors),
         "foreign": xr.Dataset({"density": ("x", np.full(9, 0.1))}, {"x": np.arange(9.0)}),
@@ -79,7 +98,15 @@ def names():
 
 
 @pytest.mark.filterwarnings("ignore:.*Without a steady state")
-@pytest.mark.parametrize(("call", "said"), WRONG_CALLS)
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        pytest.param(
+            *line, marks=pytest.mark.compiled if re.search("twenty|lossy", line[0]) else ()
+        )
+        for line in WRONG_CALLS + REFUSED
+    ],
+)
 def test_a_wrong_call_says_in_one_line_what_is_wanted_before_any_work(
     call, said, names, monkeypatch
 ):

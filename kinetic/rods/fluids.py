@@ -2,7 +2,6 @@
 
 import json
 import math
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -83,7 +82,11 @@ def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
         particle=("particle", np.arange(chain.size) + 1, described(*VOCABULARY["particle"])),
         mean_position=(mean.dims, mean.values + chain.anchors, position),
     )
-    return result.assign_attrs(density_of=OF_RODS, **_errors(theory, chain))
+    by_labels = json.loads(theory.attrs["provenance"]).get("theory") == BY_LABELS
+    exact = by_labels and not math.isnan(theory.attrs.get("density_model_error", math.nan))
+    stated = (expected("equilibrium", chain) if exact else Accuracy()).named()
+    errors = {name: value for name, value in stated.items() if name in theory.attrs}
+    return result.assign_attrs(density_of=OF_RODS, **errors)
 
 
 def _check(theory: xr.Dataset) -> Chain:
@@ -135,11 +138,3 @@ def _temperature(chain: Chain, fluid: xr.Dataset) -> float:
     if "velocity_width" in fluid:
         return float((chain.rod_masses * fluid.velocity_width.values**2).mean())
     return chain.temperature
-
-
-def _errors(theory: xr.Dataset, chain: Chain) -> dict[str, Any]:
-    """Return the errors to state, of the kinds that the theory states."""
-    by_labels = json.loads(theory.attrs["provenance"]).get("theory") == BY_LABELS
-    exact = by_labels and not math.isnan(theory.attrs.get("density_model_error", math.nan))
-    stated = (expected("equilibrium", chain) if exact else Accuracy()).named()
-    return {name: value for name, value in stated.items() if name in theory.attrs}

@@ -92,7 +92,9 @@ def solve_variable_temperature(chain: Chain, variance: Profile) -> xr.Dataset:
     for _ in range(_MESHES):
         basis = Basis(MeshLine(nodes), ElementLineP2(), intorder=6)
         P = _newton(basis, guess(basis.doflocs[0]), warmth, crowd, lam)
-        label = _labels(basis, P, warmth, crowd)
+        pressure = np.exp(np.asarray(basis.interpolate(P)))
+        room = warmth(basis.global_coordinates()[0]) + crowd * pressure
+        label = np.append(0.0, np.cumsum((pressure / room * basis.dx).sum(axis=1)))
         nodes = _adapted(basis, P, label, crowd, warmth)
         order = np.argsort(basis.doflocs[0])
         guess = PchipInterpolator(basis.doflocs[0][order], P[order])
@@ -141,13 +143,6 @@ def _require_vacuum(basis: Basis, P: Array, s: float) -> None:
                 "velocity_variance is so high outside the chain that rods are found beyond "
                 f"x = {s * places[end]:.4g}, where its equations are no longer solved"
             )
-
-
-def _labels(basis: Basis, P: Array, warmth: Warmth, crowd: float) -> Array:
-    """Return nu at the mesh's vertices, counted from the left end; the last one should be 1."""
-    pressure = np.exp(np.asarray(basis.interpolate(P)))
-    room = warmth(basis.global_coordinates()[0]) + crowd * pressure
-    return np.concatenate([[0.0], np.cumsum((pressure / room * basis.dx).sum(axis=1))])
 
 
 def _adapted(basis: Basis, P: Array, label: Array, crowd: float, warmth: Warmth) -> Array:

@@ -11,6 +11,7 @@ import pytest
 
 from crazybilliards.comparison import compare, smooth
 from crazybilliards.comparison.distances import deviations
+from crazybilliards.comparison.side_by_side import grid
 from crazybilliards.comparison.side_by_side.grid import ELASTIC
 from crazybilliards.comparison.side_by_side.grid_figures import draw_density, draw_displacement
 from crazybilliards.comparison.stationary_theories import TITLES
@@ -79,11 +80,15 @@ def test_the_tree_holds_everything_with_its_chain(tree):
         assert arctanh.attrs[f"{name}_error"] == pytest.approx(share * arctanh.attrs[name], rel=0.2)
 
 
-def test_rods_that_hardly_touch_go_without_the_arctanh_but_lose_nothing():
+def test_rods_that_hardly_touch_go_without_the_arctanh_but_lose_nothing(monkeypatch):
+    """Whether a fit of noise finds an arctanh is chance."""
+
+    def fail(run):
+        raise ValueError("no arctanh fits")
+
+    monkeypatch.setattr(grid, "fit_arctanh", fail)
     with pytest.warns(UserWarning, match="has no arctanh fit: no arctanh fits"):
-        tree = compare(
-            Chain(size=20, gap=50), {"amplitude": [1]}, duration=5000, seed=1, progress=False
-        )
+        tree = compare(Chain(size=20), {"amplitude": [1]}, duration=500, seed=1, progress=False)
     assert set(tree["amplitude_1"].children) == {"simulation", *WITHOUT_FIT}
     assert set(deviations(tree["amplitude_1"])) == {*WITHOUT_FIT}
 

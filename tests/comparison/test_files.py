@@ -199,22 +199,11 @@ def test_a_file_of_another_kind_is_refused_and_kept(kind, strangers):
 @pytest.mark.parametrize(
     "changed",
     [
-        {"duration": 50.0},
-        {"warmup": 2.0},
-        {"seed": 5},
-        {"replicas": 2},
-        {"observe": "density"},
-        {"particles": [1]},
-        {"time_step": 0.09},
-        {"every": 0.5},
-        {"average": "ensemble"},
-        {"stepper": "euler"},
-        {"merging": 0.02},
-        {"method": "contact-dynamics"},
+        *({"duration": 50.0}, {"warmup": 2.0}, {"seed": 5}, {"replicas": 2}, {"particles": [1]}),
+        *({"time_step": 0.09}, {"every": 0.5}, {"stepper": "euler"}, {"merging": 0.02}),
+        *({"observe": "density"}, {"average": "ensemble"}, {"method": "contact-dynamics"}),
         {"start": given_start(CHAIN, CHAIN.anchors + 0.1)},
-        {"gap": 0.1},
-        {"size": 4},
-        {"spring": "quadratic"},
+        *({"gap": 0.1}, {"size": 4}, {"spring": "quadratic"}),
     ],
 )
 def test_a_checkpoint_of_another_call_is_refused_and_kept(changed, files):

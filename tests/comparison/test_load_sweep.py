@@ -70,35 +70,9 @@ def test_a_coordinate_is_found_as_it_is_printed(tmp_path):
     assert loaded.file.sel(restitution=0.7, seed=0, size=2) == case.file(tmp_path).name
 
 
-SWEEP = b"""[grid]
-size = [3, 4]
-restitution = [0.5, 1.0]
-
-[simulate]
-duration = 200
-observe = ["widths"]
-"""
-
-
-@pytest.mark.parametrize("flips", [100, pytest.param(1000, marks=pytest.mark.torture)])
-def test_a_description_with_flipped_bits_or_cut_is_another_sweep_or_refused(flips, tmp_path):
-    """A text without checksum: what is still TOML and makes sense is a sweep."""
-    generator, refusals = np.random.default_rng(4), []
-    changed = [SWEEP[: cut * len(SWEEP) // 50] for cut in range(50)]
-    for _ in range(flips):
-        text = bytearray(SWEEP)
-        text[generator.integers(len(text))] ^= 1 << int(generator.integers(8))
-        changed.append(bytes(text))
-    for text in changed:
-        (tmp_path / "grid.toml").write_bytes(text)
-        try:
-            read_sweep(tmp_path / "grid.toml").cases()
-        except ValueError as error:
-            refusals.append(str(error))
-    assert flips / 2 < len(refusals) < flips + 50
-    # The mark that some editors write before a text is left out.
-    (tmp_path / "grid.toml").write_bytes(b"\xef\xbb\xbf" + SWEEP)
-    assert read_sweep(tmp_path / "grid.toml").grid
+def test_the_mark_that_some_editors_write_before_a_text_is_left_out(tmp_path):
+    (tmp_path / "grid.toml").write_bytes(b"\xef\xbb\xbf[grid]\nsize = [3, 4]\n[simulate]\n")
+    assert read_sweep(tmp_path / "grid.toml").grid == {"size": [3, 4]}
 
 
 @pytest.fixture(scope="module")

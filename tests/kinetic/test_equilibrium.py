@@ -1,11 +1,11 @@
-"""The exact equilibrium: order statistics, a truncated Gaussian, sums over a mesh, its samples."""
+"""The exact equilibrium: order statistics, sums over a mesh, its samples."""
 
 import math
 
 import numpy as np
 import pytest
 from scipy.special import betainc
-from scipy.stats import beta, gennorm, truncnorm
+from scipy.stats import beta, gennorm
 
 from crazybilliards.kinetic import equilibrium, equilibrium_states
 from crazybilliards.kinetic.exact.recursion import recursion_of
@@ -43,19 +43,6 @@ def test_without_gap_displacements_are_order_statistics(size, amplitude, spring)
     np.testing.assert_allclose(exact.label, label, atol=2e-6)
     density = (law.pdf(free.cdf(y)) * free.pdf(y)).sum(axis=1)
     np.testing.assert_allclose(exact.density, density, atol=1e-5 * density.max())
-
-
-@pytest.mark.parametrize("gap", [0.0, 0.3, 2.0])
-def test_two_rods_are_a_truncated_gaussian(gap):
-    """The distance of two rods on linear springs is a Gaussian cut off at contact."""
-    chain = Chain(size=2, gap=gap)
-    s = chain.thermal_length
-    distance = truncnorm(-gap / (math.sqrt(2) * s), np.inf, loc=gap, scale=math.sqrt(2) * s)
-    exact = equilibrium(chain)
-    shift = (distance.mean() - gap) / 2
-    np.testing.assert_allclose(exact.mean_displacement, [-shift, shift], atol=1e-6)
-    width = math.sqrt(s**2 / 2 + distance.var() / 4)
-    np.testing.assert_allclose(exact.displacement_width, width, rtol=1e-5)
 
 
 @pytest.mark.parametrize(("size", "gap"), [(1, 0.0), (5, 0.7), (200, 0.0)])

@@ -238,23 +238,19 @@ def test_what_ctrl_c_ended_is_not_solved_again(monkeypatch):
         return part
 
     monkeypatch.setattr(eulerian_frame, "solve", interrupted)
-    arguments = {
-        "duration": 1.0,
-        "every": 0.1,
-        "frame": "eulerian",
-        "velocity_variance": "evolving",
-    }
+    arguments = {"duration": 1.0, "every": 0.1, "frame": "eulerian"} | QUIET
+    arguments["velocity_variance"] = "evolving"
     for factor, left in ((1.0, 6), (np.nan, 4), (1e5, 2)):
         calls.clear()
         change.update(factor=factor, first=left)
-        flow = hydrodynamics(chain, displaced(chain, 1.0), **arguments, **QUIET)
+        flow = hydrodynamics(chain, displaced(chain, 1.0), **arguments)
         assert flow.attrs["status"] == "interrupted"
         assert flow.sizes["time"] == left
         assert flow.attrs["end_time"] == pytest.approx(0.1 * (left - 1))
         assert len(calls) == 1
     change.update(factor=np.nan, first=0)
     with pytest.raises(KeyboardInterrupt, match="nothing was computed"):
-        hydrodynamics(chain, displaced(chain, 1.0), **arguments, **QUIET)
+        hydrodynamics(chain, displaced(chain, 1.0), **arguments)
 
 
 @pytest.mark.compiled

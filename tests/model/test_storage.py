@@ -20,18 +20,10 @@ from crazybilliards.particles import simulate
 
 @pytest.fixture
 def dataset():
-    chain = Chain(size=5, gap=0.5)
-    values = np.linspace(0, 1, 5)
-    return result(
-        chain,
-        {
-            "mean_displacement": ("particle", values),
-            "mean_displacement_error": ("particle", values),
-        },
-        source="simulation",
-        method={"seed": 3},
-        end_time=12.5,
-    )
+    names = ("mean_displacement", "mean_displacement_error")
+    variables = dict.fromkeys(names, ("particle", np.linspace(0, 1, 5)))
+    how = {"source": "simulation", "method": {"seed": 3}, "end_time": 12.5}
+    return result(Chain(size=5, gap=0.5), variables, **how)
 
 
 def test_what_is_saved_comes_back_the_same_and_other_programs_can_read_it(dataset, tmp_path):

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from drifts import UNSEEN, Around, drift, drifted, require_alike, require_kept
+from drifts import OPERATORS, UNSEEN, Around, drift, drifted, require_alike, require_kept
 from gauss_seidel import solve
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from crazybilliards.model.kernels import kernel
@@ -13,15 +13,20 @@ from crazybilliards.particles.laws.law import CONTACTS, EVENTS, ISOTONIC, SORT, 
 
 
 @st.composite
-def states(draw, touching=True):
-    """Draw up to 15 points, some of them possibly in contact, and their velocities."""
+def states(draw):
+    """Draw up to 15 points, some of them possibly in contact, and their velocities.
+
+    On a lattice there are exact ties, equal speeds, rows of touching rods and rods at rest.
+    """
     generator = np.random.default_rng(draw(st.integers(0, 2**32)))
     size = draw(st.integers(1, 15))
     gaps = generator.exponential(size=size) / size
-    if touching and draw(st.booleans()):
+    if draw(st.booleans()):
         gaps[generator.random(size) < 0.5] = 0
-    y = np.cumsum(gaps)
-    return y - (y[0] + y[-1]) / 2, generator.normal(size=size)
+    y, v = np.cumsum(gaps), generator.normal(size=size)
+    if draw(st.booleans()):
+        y, v = np.round(4 * y) / 2, np.round(v)
+    return y - (y[0] + y[-1]) / 2, v
 
 
 def surroundings(room, wall):
@@ -32,24 +37,29 @@ def surroundings(room, wall):
 
 rooms = st.sampled_from([np.inf, 0.0, 0.3])
 arounds = surroundings(rooms, st.sampled_from([0.0, 0.5, 1.0]))
+LONG = 500.0
 steps = st.floats(1e-3, 2)
 gaps = st.sampled_from([0.0, 0.05, 1.0])
 pulls = st.sampled_from([0.0, 0.2])
-restitutions = st.sampled_from([0.0, 0.3, 0.8, 0.95, 1.0, 1.05])
+restitutions = st.sampled_from([0.0, 0.16, 0.5, 0.95, 0.9999, 1.0, 1.05])
 
 
+@settings(max_examples=200)
 @given(
     state=states(),
-    dt=steps,
+    dt=steps | st.just(LONG),
     e=restitutions,
-    operator=st.sampled_from([EVENTS, CONTACTS]),
+    operator=st.sampled_from(OPERATORS),
     around=arounds,
     gap=gaps,
     pull=pulls,
+    exponent=st.sampled_from([2, 3]),
 )
-def test_what_every_operator_keeps(state, dt, e, operator, around, gap, pull):
+def test_what_every_operator_keeps(state, dt, e, operator, around, gap, pull, exponent):
     e = min(e, 1.0) if around.room < np.inf else e  # with flippers in a box nothing is bounded
-    require_kept(operator, state, dt, e, around=around, gap=gap, pull=pull)
+    pull = 0.0 if dt == LONG else pull
+    springs = {"gap": gap, "pull": pull, "exponent": exponent}
+    require_kept(operator, state, dt, e, around=around, **springs)
 
 
 @given(state=states(), dt=steps, gap=gaps, around=surroundings(rooms, st.just(0.0)))
@@ -57,7 +67,7 @@ def test_isotonic_is_event_driven_without_restitution(state, dt, gap, around):
     require_alike(ISOTONIC, EVENTS, state, dt, 0.0, gap=gap, pull=0.2, around=around)
 
 
-@given(state=states(touching=False), dt=steps)
+@given(state=states(), dt=steps)
 def test_sort_is_event_driven_at_restitution_one(state, dt):
     require_alike(SORT, EVENTS, state, dt, 1.0)
 
@@ -103,15 +113,6 @@ def test_contact_dynamics_is_what_gauss_seidel_converges_to(state, dt, e, gap, p
         solve(y, swept, half_kicks, dt, e, tolerance, impulses, bounds, *more)
         assume(not ends or bounds.sum() < 0)
     np.testing.assert_allclose(exact.v, swept[ends : v.size - ends], atol=1e-9)
-
-
-def test_newtons_cradle_sends_off_the_last_rod():
-    """But in contact dynamics, which shares the impulse."""
-    first = np.eye(1, 5)[0]
-    for operator in (SORT, EVENTS):
-        np.testing.assert_array_equal(drifted(operator, (-first, first), 1.5, 1.0).v, first[::-1])
-    after = drifted(CONTACTS, ([0, 0, 0], [1, 0, 0]), 0.1, 1.0).v
-    np.testing.assert_allclose(after, [-1 / 3, 2 / 3, 2 / 3])
 
 
 def test_inelastic_collapse_takes_a_bounded_number_of_collisions():

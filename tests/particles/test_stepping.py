@@ -30,16 +30,12 @@ def stationary_widths(stepper, time_step, **parameters):
 
 def test_splitting_has_the_exact_velocity_width_at_any_step_and_order_two_in_displacement():
     chain = Chain(size=1)
-    errors = []
     for time_step in (0.1, 0.2, 0.4, 1.5):
         displacement, velocity = stationary_widths("splitting", time_step)
         assert velocity == pytest.approx(chain.free_velocity_width, rel=1e-12)
         rate = np.sqrt(chain.stiffness / chain.mass)
         shadow = chain.thermal_length / np.sqrt(1 - (rate * time_step / 2) ** 2)
         assert displacement == pytest.approx(shadow, rel=1e-12)
-        errors.append(displacement / chain.thermal_length - 1)
-    orders = np.log2(np.array(errors[1:3]) / errors[:2])
-    np.testing.assert_allclose(orders, 2, atol=0.02)
 
 
 def test_the_velocity_width_of_euler_is_off_by_the_stated_error():

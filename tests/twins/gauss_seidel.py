@@ -7,22 +7,9 @@ which converges to the same velocities at a cost that grows with the square of t
 import numpy as np
 from numba import njit
 
-from crazybilliards.model.arrays import Array
-
 
 @njit(cache=True, nogil=True)
-def solve(
-    y: Array,
-    v: Array,
-    given: Array,
-    dt: float,
-    restitution: float,
-    tolerance: float,
-    impulses: Array,
-    bounds: Array,
-    inverse: Array | None = None,
-    wall: float = 1.0,
-) -> int:
+def solve(y, v, given, dt, restitution, tolerance, impulses, bounds, inverse=None, wall=1.0):  # type: ignore[no-untyped-def]
     """Velocities after contact, in place; return the number of sweeps.
 
     ``given`` (L) is the velocity that each rod has got from its spring in the half kick before: the
