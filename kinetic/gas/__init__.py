@@ -23,7 +23,7 @@ term, n sqrt(T) |T_l|/T, which bounds q where the temperature changes within the
 rod. phi = P/(n T) is 1 for points, and less with a gap (:mod:`.elastic_contacts`).
 
 In the mean field, where colliding rods are independent, a = 1 and h = 0. The fluctuations of
-the same equations give a(l) and h(l), the part of T that whole neighbourhoods share
+the same equations give a(l) and h(l), the part of <v^2> that whole neighbourhoods share
 (:mod:`.closure`, :mod:`.fluctuations`).
 
 **Ends.** Beyond an open end there is no rod: P = 0, q = 0. A wall is a contact at which P acts on

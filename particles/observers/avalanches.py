@@ -1,7 +1,5 @@
 """Avalanche sizes by origin, in two counts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, ClassVar, Self
 

@@ -1,7 +1,5 @@
 """Collisions at every contact."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Covariances of rods a few places apart."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from crazybilliards.model.checks import check_integer

@@ -1,7 +1,5 @@
 """The density on the position grid."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Self
 

@@ -1,7 +1,5 @@
 """The energies of the rods and of the springs in time."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Self
 

@@ -1,7 +1,5 @@
 """What collisions exchange and take at every contact."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Self
 

@@ -1,7 +1,5 @@
 """Mean squares of the velocities of waves along the chain."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from crazybilliards.model import Chain

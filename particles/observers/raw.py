@@ -1,7 +1,5 @@
 """Raw snapshots, for measurements that no other observer makes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Self
 

@@ -1,7 +1,5 @@
 """How long rods, waves and the centre of mass remember their velocities and displacements."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

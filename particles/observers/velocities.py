@@ -1,7 +1,5 @@
 """Velocity distributions of the chosen particles."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Self
 

@@ -1,7 +1,5 @@
 """What the rods of a gas in a box do to its walls."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from crazybilliards.model.parameters import WALLS_AND_MASSES

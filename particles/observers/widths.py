@@ -1,7 +1,5 @@
 """Widths and displacements of every particle."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from crazybilliards.particles.observers.base import Averaged, Integers, Snapshots, Variables

@@ -44,7 +44,7 @@ def test_two_elastic_rods_are_two_points_that_pass():
     agree(with_error(run, "contact_force"), chain.stiffness * length / np.sqrt(np.pi))
     for name in ("relative_temperature", "contact_temperature", "rebound_temperature"):
         agree(with_error(run, name), width**2)
-        assert (run[f"{name}_error"] / run[name]).item() < 0.02
+        assert (run[f"{name}_error"] / run[name]).item() < 0.03
     assert (run.contact_loss == 0).all()
 
 
