@@ -31,6 +31,7 @@ from crazybilliards.reproduction.figures import elastic
 pytestmark = [
     pytest.mark.skipif(not sys.platform.startswith("linux"), reason="forks many threads"),
     pytest.mark.compiled,
+    pytest.mark.validate,
 ]
 torture = pytest.mark.torture
 

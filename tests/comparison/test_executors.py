@@ -46,6 +46,7 @@ def killer(folder, process):
     return threading.Thread(target=kill)
 
 
+@pytest.mark.validate
 def test_a_process_killed_in_the_middle_costs_nothing(here, tmp_path):
     with process_pool(1) as pool:
         process = psutil.Process(pool.submit(os.getpid).result())
