@@ -66,6 +66,8 @@ def _logarithm(time: ArrayLike, energy: ArrayLike, least: int) -> tuple[Array, A
     t, E = check_points(time=time, energy=energy)
     if t.size < least or E.min() <= 0:
         raise ValueError(f"the fit needs at least {least} energies, all of them positive")
+    if np.ptp(t) == 0:
+        raise ValueError("the fit needs times that differ, and these are identical")
     return t, np.log(E)
 
 

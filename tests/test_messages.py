@@ -98,7 +98,6 @@ def names():
 
 
 @pytest.mark.filterwarnings("ignore:.*Without a steady state")
-@pytest.mark.filterwarnings("ignore:Precision loss")  # of scipy 1.18, before its own error
 @pytest.mark.parametrize(
     ("call", "said"),
     [
