@@ -51,6 +51,8 @@ def fit_growth(time: ArrayLike, energy: ArrayLike) -> Fit:
     :func:`fit_singularity`.
     """
     t, log_energy = _logarithm(time, energy, least=3)
+    if np.ptp(t) == 0:
+        raise ValueError("the fit needs times that differ, and these are identical")
     line = linregress(t, log_energy)
     misfit = root_mean_square(log_energy - line.intercept - line.slope * t)
     parameters = {"scale": float(np.exp(line.intercept)), "rate": float(line.slope)}
@@ -66,8 +68,6 @@ def _logarithm(time: ArrayLike, energy: ArrayLike, least: int) -> tuple[Array, A
     t, E = check_points(time=time, energy=energy)
     if t.size < least or E.min() <= 0:
         raise ValueError(f"the fit needs at least {least} energies, all of them positive")
-    if np.ptp(t) == 0:
-        raise ValueError("the fit needs times that differ, and these are identical")
     return t, np.log(E)
 
 
