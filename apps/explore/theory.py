@@ -16,8 +16,6 @@ _MOST_POINTS = 500  # of a curve
 _ERRORS = {"error": "velocity_width", "border": "border", "density_error": "density"}
 _KINDS = {"size": int, "restitution": float, "amplitude": float, "damping": float, "gap": float}
 
-Answer = dict[str, Any]
-
 
 def read(query: str) -> Chain:
     """Return the chain of a query; a TypeError or ValueError says what is wrong with it."""
@@ -28,7 +26,7 @@ def read(query: str) -> Chain:
     return chain
 
 
-def answer(query: str) -> Answer:
+def answer(query: str) -> dict[str, Any]:
     """Return the theories of the chain in a query, or why there is none, ``refused``.
 
     The theory is ``best``: the gas or, at e = 1, the exact equilibrium, and then the force balance
@@ -64,7 +62,7 @@ def _why_none(chain: Chain, error: str) -> str:
     return f"its equations could not be solved for this chain{way}"
 
 
-def _result(theory: StationaryTheory, chain: Chain) -> Answer:
+def _result(theory: StationaryTheory, chain: Chain) -> dict[str, Any]:
     """Solve a theory, and return what the page draws and says of it."""
     solved = theory.solve(chain)
     density = smooth(solved).density
