@@ -85,6 +85,8 @@ def _as_dataset(label: str, data: Any, quantity: str, abscissa: str) -> xr.Datas
         return data
     if isinstance(data, xr.DataArray):
         return data.to_dataset(name=quantity)
+    if isinstance(data, np.ndarray) and data.ndim == 2 and data.shape[1] == 2 < len(data):
+        data = data.T  # the rows of a file, as np.loadtxt reads them
     try:
         x, values = (check_numbers(label, column) for column in data)
         return xr.Dataset({quantity: (abscissa, values)}, {abscissa: x})

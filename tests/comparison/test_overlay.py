@@ -242,6 +242,7 @@ def test_an_overlay_can_be_seen_in_a_dark_style_with_data_of_ones_own():
     exact = equilibrium(CHAIN)
     values = exact.density.drop_attrs()
     own = {"array": values, "dataset": values.to_dataset(), "columns": (values.x, values.values)}
+    own["rows of a file"] = np.column_stack(own["columns"])
     with plt.style.context("dark_background"):
         ax = overlay(own | {"run": exact.assign_attrs(source="simulation")})
     assert ax.get_xlabel() == "position $x$ [R]"
