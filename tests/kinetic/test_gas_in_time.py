@@ -94,7 +94,7 @@ def test_a_jump_of_the_flow_meets_the_viscous_pressure():
 
 @pytest.mark.compiled
 @pytest.mark.parametrize(
-    ("chain", "replicas"), [(Place(5, 0.8, 0.5).chain(), 1000), (Place(20, 1.03, 1.0).chain(), 300)]
+    ("chain", "replicas"), [(Place(5, 0.8, 0.5).chain(), 2000), (Place(20, 1.03, 1.0).chain(), 300)]
 )
 @pytest.mark.filterwarnings("ignore:the error of the kinetic energy")
 def test_the_kinetic_energy_is_that_of_simulated_chains(chain, replicas):
@@ -112,8 +112,8 @@ def test_the_kinetic_energy_is_that_of_simulated_chains(chain, replicas):
         **times,
     )
     flow = hydrodynamics(chain, compressed(chain, factor), velocity_variance="evolving", **times)
-    off = (flow.kinetic_energy - run.kinetic_energy) / run.kinetic_energy_error
-    assert float(np.abs(off).max()) < 5
+    off, energy = np.abs(flow.kinetic_energy - run.kinetic_energy), run.kinetic_energy
+    assert (off < 5 * run.kinetic_energy_error + 0.005 * energy).all()  # the theory's own error
     assert flow.attrs["status"] == "completed"
     np.testing.assert_allclose(flow.rods, chain.size, rtol=1e-12)
 

@@ -149,9 +149,9 @@ def test_a_gas_released_from_one_half_fills_the_box_as_its_points_do(damping, ti
 def test_a_granular_gas_is_as_cold_as_the_balance_of_energy_says(e, found):
     """50 rods with Gamma l/(L W) = 0.1; ``found`` in other simulations, whose error is 1e-3."""
     chain = gas(50, room=5.0, restitution=e)
-    run = simulate(chain, duration=2000)
+    run = simulate(chain, duration=8000)  # it scatters by 2.5e-3
     middle = np.sqrt((run.velocity_width[12:38] ** 2).mean().item())
-    assert middle == pytest.approx(found, rel=0.02)
+    assert middle == pytest.approx(found, rel=0.01)
     assert centre_width(chain) == pytest.approx(found, rel=0.02)
 
 
