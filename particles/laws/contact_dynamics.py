@@ -37,17 +37,18 @@ def drift(y, v, anchors, dt, restitution, pull, exponent, integers, floats):  # 
     """
     violations, firsts, lasts = integers[0], integers[1], integers[2]
     shifted, totals, sums, unused = floats[0], floats[1], floats[2], floats[3]
-    count, total, before = INDEX(0), 0.0, v[0]
-    shifted[0], totals[0] = before, total
+    count, total = INDEX(0), 0.0
+    shifted[0], totals[0] = v[0], total
     for i in range(y.size - 1):
-        displacements = y[i] - anchors[i], y[i + 1] - anchors[i + 1]
-        ahead = springs_ahead(*displacements, pull, exponent, -dt / 2)
-        total += bound(y[i + 1] - y[i], v[i] - v[i + 1], restitution, ahead, dt)
-        free = v[i + 1] - total
-        shifted[i + 1], totals[i + 1] = free, total
+        gap, closing, ahead = y[i + 1] - y[i], v[i] - v[i + 1], 0.0
+        if restitution > 0 and gap < dt * closing:
+            displacements = y[i] - anchors[i], y[i + 1] - anchors[i + 1]
+            ahead = springs_ahead(*displacements, pull, exponent, -dt / 2)
+        total += bound(gap, closing, restitution, ahead, dt)
+        shifted[i + 1], totals[i + 1] = v[i + 1] - total, total
+    for i in range(y.size - 1):  # by themselves, which is faster
         violations[count] = i + 1
-        count += INDEX(free < before)
-        before = free
+        count += INDEX(shifted[i + 1] < shifted[i])
     _, merged = pool(shifted, shifted, violations, count, firsts, lasts, sums, unused)
     before = -np.inf
     for i in range(y.size):
