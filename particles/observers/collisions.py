@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from scipy.optimize import brentq
 
 from crazybilliards.model.warn import warn_user
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
@@ -75,6 +74,7 @@ def checked_rate(run: Run, name: str, e: float, variables: Variables) -> Variabl
 
 def _decay_of_speeds(e: float) -> float:
     """Return -s of :func:`checked_rate`."""
+    from scipy.optimize import brentq  # takes .1 s, and few runs count collisions
 
     def balance(s: float) -> float:
         return s * math.log(e) - math.log(2 * math.sin(math.pi * (2 * s + 5) / 6))
