@@ -96,6 +96,42 @@ def measured() -> Iterator[cb.Chain]:
         yield on_springs(L, e, G, next(s), spring="quadratic")
     for L, e in product((100, 300), (0.3, 0.6, 0.9)):
         yield on_springs(L, e, WEAK, next(s), spring="quadratic")
+    for L, G in product((2, 4, 10, 30, 100, 300), dampings):  # the paper's main case
+        yield on_springs(L, 0.0, G, next(s))
+    yield on_springs(1000, 0.0, NORMAL, next(s))
+    for L, G, gap in product((20, 100), dampings, (0.15, 1.0, 4.0)):
+        yield on_springs(L, 0.0, G, next(s), gap=gap)
+    for L in (10, 30, 100, 300):
+        yield on_springs(L, 0.0, NORMAL, next(s), spring="quadratic")
+    yield from between_the_others()
+
+
+def between_the_others() -> Iterator[cb.Chain]:
+    """Give chains with other sizes, gaps, rooms and dampings: at the ends, and between."""
+    s, product = itertools.cycle(LENGTHS), itertools.product
+    for L, e in product((30, 100), (0.1, 0.5, 0.9)):
+        yield on_springs(L, e, NORMAL, LENGTHS[0])
+    for e, gap, room in zip((0.3, 0.5, 0.9) * 2, (0.05, 0.7) * 3, (0.5, 3.5) * 3, strict=True):
+        yield on_springs(4, e, NORMAL, next(s), gap=gap)
+        yield on_springs(4, e, NORMAL, next(s), room=room)
+    for L, e in product((20, 100), (0.3, 0.5, 0.9)):
+        yield on_springs(L, e, NORMAL, next(s), gap=0.05)
+    for e, G, gap in product((0.3, 0.6, 0.9), (WEAK, STRONG), (0.4, 2.0)):
+        yield on_springs(50, e, G, next(s), gap=gap)
+    for e, room in product((0.5, 0.9), (0.72, 3.6)):
+        yield on_springs(40, e, NORMAL, next(s), room=room)
+    for e, G in product((0.6, 0.9), (WEAK, STRONG)):
+        yield on_springs(50, e, G, next(s), room=1.5)
+    for e, G in product((0.3, 0.5, 0.9), (0.03, 0.5)):
+        yield gas(4, e, G)
+    for L, e in product((4, 10, 30, 100), (0.3, 0.6, 0.9)):
+        yield gas(L, e, 1.5)
+    for L, G in product((10, 100), (0.03, 0.5)):
+        yield gas(L, 0.98, G)
+    for L, (e, walls) in product((10, 40), ((0.7, 0.5), (0.9, 0.9), (1.0, 0.5), (1.0, 0.9))):
+        yield gas(L, e, 0.1, walls)
+    for G in (WEAK, STRONG):
+        yield on_springs(30, 0.5, G, next(s), spring="quadratic")
 
 
 def held_out() -> Iterator[cb.Chain]:
@@ -124,6 +160,10 @@ def held_out() -> Iterator[cb.Chain]:
     for _ in range(6):
         L, e, G = size(300), round(draw.uniform(0.3, 0.9), 3), between(0.2, 1.5)
         yield on_springs(L, e, G, between(0.4, 2), spring="quadratic")
+    for _ in range(6):
+        yield on_springs(size(300), 0.0, between(0.15, 1.5), between(0.4, 2))
+    for _ in range(3):
+        yield on_springs(size(100), 0.0, between(0.2, 1.5), between(0.4, 2), gap=between(0.15, 4))
 
 
 def simulated(folder: Path, chain: cb.Chain) -> xr.Dataset:

@@ -59,9 +59,10 @@ def test_a_measured_chain_states_no_less_than_its_row():
 @pytest.mark.parametrize(
     "changes",
     [
-        *({"size": 2000}, {"gap": 5.0}, {"damping": 20}, {"damping": 0.1}, {"restitution": 0.0}),
+        *({"size": 2000}, {"gap": 5.0}, {"damping": 20}, {"damping": 0.1}),
         *({"spring": "quadratic", "gap": 0.3}, {"spring": "quadratic", "box": 64}),
-        *({"box": 64, "wall_restitution": 0.9}, {"box": 64, "restitution": 1.01}, {"box": 100}),
+        *({"box": 64, "wall_restitution": 0.9}, {"box": 64, "restitution": 0.0}, {"box": 100}),
+        {"box": 64, "restitution": 1.01},
         {"stiffness": 0, "box": 63, "amplitude": 1e-3},
     ],
     ids=repr,
@@ -122,7 +123,7 @@ def test_the_errors_of_the_force_balance_are_those_from_the_exact_solution(size,
 
 
 def test_chains_drawn_at_random_keep_to_the_stated_errors():
-    """None is above the stated one by more than a standard error; three are above it at all."""
+    """None is above the stated one by more than a standard error; four are above it at all."""
     known, beyond = 0, 0
     for row in rows("docs/tables/stationary_held_out.csv"):
         limits = stated(chain_of_row(row))._asdict()
@@ -131,8 +132,8 @@ def test_chains_drawn_at_random_keep_to_the_stated_errors():
             known += not np.isnan(limits[name])
             beyond += error > limits[name]
             assert not error > limits[name] + spread
-    assert known > 240
-    assert beyond <= 3
+    assert known > 280
+    assert beyond <= 4
 
 
 def chain_and_start(start=compressed, by=0.9, **changes):
