@@ -240,8 +240,8 @@ def pressure(restitution: float) -> Array:
         times: dict[str, Any] = {"duration": GAS_TIMES[restitution] / chain.damping, "threads": 1}
         how: dict[str, Any] = {"observe": ["walls", "widths"], "seed": seed, "progress": False}
         found = simulate(chain, **times, **how)
-        middle = found.velocity_width.values[GAS_SIZE // 4 : -GAS_SIZE // 4]
-        square = 1.0 if restitution == 1 else float((middle**2).mean())
+        widths = found.velocity_width.values
+        square = 1.0 if restitution == 1 else float((widths**2).mean())
         # Both walls together scatter less than two independent ones: the errors are upper bounds.
         force, error = found.wall_force.values.mean(), np.hypot(*found.wall_force_error.values) / 2
         rows.append([2 * force / square, 2 * error / square, math.sqrt(square)])
