@@ -58,9 +58,9 @@ def compare(
     """Compare simulated chains with their theories.
 
     Several values of the amplitude, or of the restitution, make as many chains. If all are elastic
-    they are compared with the exact equilibrium and force balances, otherwise with the steady state
-    of the gas. Draws everything over one another and prints how far apart it is. After Ctrl-C, a
-    crash, or with more chains, the same command computes what FOLDER/cases lacks.
+    they are compared with the exact equilibrium and force balances, otherwise with the gas. Draws
+    everything over one another and prints how far apart it is. After Ctrl-C, a crash, or with more
+    chains, the same command computes what FOLDER/cases lacks.
 
     Example: crazybilliards compare --output results --amplitude 1,10 --gap 0.2
 

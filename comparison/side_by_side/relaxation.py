@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from crazybilliards.comparison.coverage import smooth
+from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.kinetic import (
     compressed,
@@ -34,15 +35,14 @@ from crazybilliards.particles import simulate
 
 Release = Literal["compressed", "displaced", "quenched", "gathered", "wave", "confined"]
 
-PARTICLES = "particles"
 # The starts of a gas in a box whose rods are drawn independently of one another.
 _OF_POINTS = {"gathered": gathered, "wave": wave}
 # The argument velocity_variance of hydrodynamics.
 FLUIDS: dict[str, Literal["evolving"] | None] = {"isothermal": None, "evolving": "evolving"}
 LEGEND = {
     "isothermal": "isothermal fluid",
-    "evolving": "fluid with temperature",
-    "rods": "rods of this fluid",
+    "evolving": "fluid with a temperature",
+    "rods": "this fluid, rod by rod",
     "exact": "exact",
 }
 
@@ -81,7 +81,7 @@ def compare_relaxation(
     Returns
     -------
     xarray.DataTree
-        ``tree["particles"]``, ``["evolving"]``, its ``["rods"]`` and, at restitution 1,
+        ``tree["simulation"]``, ``["evolving"]``, its ``["rods"]`` and, at restitution 1,
         ``["isothermal"]`` and, for linear springs without gap, or equal rods in a box without
         springs, ``["exact"]``: results over time in the common vocabulary. The densities are as
         they are, not smoothed, those of the simulation in groups of replicas as well.
@@ -127,9 +127,9 @@ def compare_relaxation(
     how |= {"observe": ("widths", "density", "energy"), "seed": seed, "threads": threads}
     how |= {"progress": progress and f"{replicas} chains"}
     start = _states(chain, release, by, fluid, replicas, seed)
-    results[PARTICLES] = simulate(chain, start=start, **how)
+    results[SIMULATION] = simulate(chain, start=start, **how)
     tree = xr.DataTree.from_dict(results)
-    tree.attrs |= {"status": results[PARTICLES].attrs["status"], "source": "comparison"}
+    tree.attrs |= {"status": results[SIMULATION].attrs["status"], "source": "comparison"}
     tree.attrs |= {"release": release, "by": by}
     return tree
 
@@ -155,8 +155,8 @@ def condensed(tree: xr.DataTree) -> xr.DataTree:
 
 def label_distances(tree: xr.DataTree) -> dict[str, float]:
     """Largest rms distance in time of mean positions from those of the ensemble, in s or h."""
-    rods = tree[PARTICLES].mean_displacement
-    s = displacement_unit(chain_of(tree[PARTICLES].to_dataset()))[1]
+    rods = tree[SIMULATION].mean_displacement
+    s = displacement_unit(chain_of(tree[SIMULATION].to_dataset()))[1]
     return {
         key: float(np.sqrt(((tree[key].mean_displacement - rods) ** 2).mean("particle")).max() / s)
         for key in LEGEND

@@ -13,11 +13,11 @@ from crazybilliards.comparison.curves import axis_label, unit_label
 from crazybilliards.comparison.drawing import overlay
 from crazybilliards.comparison.layout import TWO_COLUMNS, entitle, legend_above, panels
 from crazybilliards.comparison.side_by_side.grid import SIMULATION
-from crazybilliards.comparison.side_by_side.relaxation import LEGEND, PARTICLES, cloud
+from crazybilliards.comparison.side_by_side.relaxation import LEGEND, cloud
 from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.model import Chain, chain_of
 
-_NAMES = {PARTICLES: SIMULATION} | LEGEND
+_NAMES = {SIMULATION: SIMULATION} | LEGEND
 _MOMENTS = np.array([0.0, 0.05, 0.1, 1.0])  # of the duration, for the profiles
 _LEAST_DRAWN = 2e-3  # of close packing: pictures end where every density is lower
 _AT_REST = 0.1  # an axis of the centre is not narrower, so that it does not magnify noise
@@ -68,7 +68,7 @@ def draw_profiles(tree: xr.DataTree) -> Figure:
 def draw_cloud(tree: xr.DataTree) -> Figure:
     """Width and centre of the cloud in the reduced coordinate against time, in units of s or h."""
     figure, axes = panels(1, 2, height=2.4)
-    symbol, unit = displacement_unit(chain_of(tree[PARTICLES].to_dataset()))
+    symbol, unit = displacement_unit(chain_of(tree[SIMULATION].to_dataset()))
     clouds = {  # that of the rods is that of the fluid
         name: (cloud(tree[key].to_dataset()) / unit).assign_attrs(tree[key].attrs)
         for key, name in _NAMES.items()
@@ -123,7 +123,7 @@ def _draw_walls(ax: Axes, chain: Chain) -> None:
 
 def _densities(tree: xr.DataTree) -> dict[str, xr.Dataset]:
     """Return the smoothed densities by the names they are drawn with, where any is not small."""
-    if PARTICLES not in tree:
+    if SIMULATION not in tree:
         raise ValueError(
             f"run must be what compare_relaxation returns, got a tree of {list(tree.children)}"
         )

@@ -15,15 +15,18 @@ import crazybilliards as cb
 from crazybilliards.comparison.curves import axis_label
 from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
 from crazybilliards.comparison.layout import TWO_COLUMNS, entitle, house_style, legend_above, panels
+from crazybilliards.comparison.side_by_side.relaxation import LEGEND
+from crazybilliards.comparison.stationary_theories import TITLES
 
 SIZE = 100
 SIMULATION = "simulation"
+EXACT, BALANCE, GAS = (TITLES[name] for name in ("equilibrium", "force_balance", "steady_state"))
 LOOKS: dict[str, dict[str, Any]] = {
     SIMULATION: {"color": "black", "linestyle": "none"},
-    "equilibrium: exact": {"color": COLOURS[0]},
-    "force_balance: equation 19": {"color": COLOURS[4], "linestyle": "--"},
-    "steady_state: gas": {"color": COLOURS[0]},
-    "equilibrium, $e = 1$": {"color": "0.5", "linestyle": "--"},
+    EXACT: {"color": COLOURS[0]},
+    BALANCE: {"color": COLOURS[4], "linestyle": "--"},
+    GAS: {"color": COLOURS[0]},
+    f"{EXACT}, $e = 1$": {"color": "0.5", "linestyle": "--"},
 }
 TIMES = (0.0, 1.0, 4.0)  # t_0
 RESTITUTIONS = (1.0, 0.98, 0.9, 0.5)
@@ -34,8 +37,8 @@ def edge() -> Figure:
     chain = cb.Chain(size=SIZE, amplitude=3)
     results = {
         SIMULATION: cb.simulate(chain, duration=100_000, replicas=2, threads=1, progress=False),
-        "equilibrium: exact": cb.equilibrium(chain),
-        "force_balance: equation 19": cb.force_balance(chain),
+        EXACT: cb.equilibrium(chain),
+        BALANCE: cb.force_balance(chain),
     }
     results = smoothed(results)
     figure = Figure(figsize=(TWO_COLUMNS, 2.9))
@@ -59,9 +62,8 @@ def released() -> dict[str, xr.Dataset]:
     """Return the smoothed densities in time of a chain that is released from a compressed state."""
     chain = cb.Chain(size=SIZE, amplitude=30)
     tree = cb.compare_relaxation(chain, replicas=3000, threads=1, progress=False)
-    names = {"particles": SIMULATION, "isothermal": "isothermal fluid"}
-    names |= {"evolving": "fluid with a temperature"}
-    return {name: cb.smooth(tree[key].to_dataset()) for key, name in names.items()}
+    keys = SIMULATION, "isothermal", "evolving"
+    return {LEGEND.get(key, key): cb.smooth(tree[key].to_dataset()) for key in keys}
 
 
 def profiles(densities: Mapping[str, xr.Dataset]) -> Figure:
@@ -109,10 +111,10 @@ def dissipative() -> Figure:
         left.plot(rods, gas.velocity_width / unit, color=COLOURS[number])
         worst = abs(gas.velocity_width / run.velocity_width.values - 1).max()
         print(f"velocity width at e = {e:g}: {100 * float(worst):.1f} %")
-    left.plot([], [], color="0.4", label="steady_state: gas")
-    results = smoothed({SIMULATION: run, "steady_state: gas": gas})
+    left.plot([], [], color="0.4", label=GAS)
+    results = smoothed({SIMULATION: run, GAS: gas})
     elastic = cb.smooth(cb.equilibrium(chain.replace(restitution=1.0)))
-    results |= {"equilibrium, $e = 1$": elastic}
+    results |= {f"{EXACT}, $e = 1$": elastic}
     cb.overlay(results, ax=right, style={name: LOOKS[name] for name in results})
     entitle(right, f"$e = {e:g}$")
     along_the_chain(left)

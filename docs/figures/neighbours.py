@@ -25,7 +25,7 @@ def main() -> None:
             draw_points(ax, rows["L"], values, errors, number=number, label=f"$e = {e:g}$")
             ax.plot(rows["L"], rows[f"{quantity}, theory"], color=COLOURS[number])
     for ax in axes:
-        ax.plot([], [], color="0.4", label="steady_state: gas")
+        ax.plot([], [], color="0.4", label="gas")
         ax.set(xscale="log", xlabel="rods $L$")
         ax.set_xticks(rows["L"], [f"{size}" for size in rows["L"]])
         ax.xaxis.set_minor_formatter("")

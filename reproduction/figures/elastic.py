@@ -80,7 +80,7 @@ def _draw_velocities(results: Results) -> Figure:
     for number, (label, runs) in enumerate(_METHODS.items()):
         run = runs.mean(results)
         draw_rods(right, run, "velocity_width", number=number, unit=_UNIT, label=label)
-    right.axhline(1, color="black", linestyle=":", label="exact")
+    right.axhline(1, color="black", linestyle=":", label=TITLES["equilibrium"])
     along_the_chain(right)
     right.set(ylabel="velocity width $W_v/W$")
     entitle(right, f"$L = {chains.LARGE}$")
@@ -148,13 +148,13 @@ def _claims_of_displacement(results: Results) -> list[Claim]:
 
 def _draw_displacement(results: Results) -> Figure:
     run = _run(results, _ARCTANH)
-    s = chain_of(run).thermal_length
-    x = run.mean_position.values
+    s, x = chain_of(run).thermal_length, run.mean_position.values
     measured, error = run.mean_displacement.values / s, run.mean_displacement_error.values / s
     exact, fitted = equilibrium(chain_of(run)).mean_displacement.values / s, fit_arctanh(run)(x) / s
     figure, (top, bottom) = panels(2, 1, height=1.7, sharex=True, height_ratios=(2, 1))
     draw_points(top, x, measured, error, number=0, color="black", linewidth=0.7, label="simulation")
-    for label, curve, style in (("exact", exact, "C1-"), ("arctanh fit", fitted, "C0--")):
+    lines = ((TITLES["equilibrium"], exact, "C1-"), ("arctanh fit", fitted, "C0--"))
+    for label, curve, style in lines:
         top.plot(x, curve, style, label=label)
         bottom.plot(x, curve - measured, style)
     bottom.fill_between(x, -error, error, color="0.8", label="one standard error")

@@ -65,7 +65,7 @@ def test_inelastic_chains_are_followed_by_the_fluid_with_temperature_and_heat_fl
     chain = Chain(size=30, restitution=0.95, amplitude=20)
     how = {"duration": 10, "replicas": 200, "progress": False}
     tree = compare_relaxation(chain, "compressed", 0.8, **how)
-    assert set(tree.children) == {"particles", "evolving", "rods"}
+    assert set(tree.children) == {"simulation", "evolving", "rods"}
     assert label_distances(tree)["rods"] < 0.05
     assert len(draw_spacetime(condensed(tree)).axes) == 4
 
@@ -93,7 +93,7 @@ def released(chain, release, by):
 @pytest.mark.filterwarnings("ignore:equal elastic rods", "ignore:the error of the force balance")
 def test_a_gas_in_a_box_moves_as_its_points_do_and_not_as_a_fluid(release, by):
     tree = released(GAS, release, by)
-    run, exact = tree["particles"].to_dataset(), tree["exact"].to_dataset()
+    run, exact = tree["simulation"].to_dataset(), tree["exact"].to_dataset()
     off = (run.mean_displacement - exact.mean_displacement) / run.mean_displacement_error
     assert float(np.abs(off).max()) < 5
     for time in range(run.sizes["time"]):
@@ -110,7 +110,7 @@ def test_a_gas_in_a_box_moves_as_its_points_do_and_not_as_a_fluid(release, by):
 def test_pictures_of_a_gas_in_a_box_have_walls_and_five_descriptions():
     tree = released(GAS, "gathered", 0.5)
     titles = [ax.get_title(loc="left") for ax in draw_spacetime(tree).axes]
-    assert titles[3:] == ["(d)  rods of this fluid", "(e)  exact", ""]
+    assert titles[3:] == ["(d)  this fluid, rod by rod", "(e)  exact", ""]
     walls = {line.get_xdata()[0] for line in draw_profiles(tree).axes[0].lines} & {-40, 40}
     assert walls == {-40, 40}
     assert draw_cloud(tree).axes[1].get_ylabel() == "centre / $h$"
@@ -126,19 +126,19 @@ def test_two_masses_make_a_fluid_of_the_gas():
 def test_the_pictures_show_every_description(tree):
     titles = [ax.get_title(loc="left") for ax in draw_spacetime(tree).axes]
     assert titles == [
-        *("(a)  simulation", "(b)  isothermal fluid", "(c)  fluid with temperature"),
-        *("(d)  rods of this fluid", ""),
+        *("(a)  simulation", "(b)  isothermal fluid", "(c)  fluid with a temperature"),
+        *("(d)  this fluid, rod by rod", ""),
     ]
     assert len(draw_profiles(tree).axes) == 4
     assert columns_without_numbers(draw_profiles(tree)) == []
     labels = draw_cloud(tree).axes[0].get_legend_handles_labels()[1]
-    assert set(labels) == {"simulation", "isothermal fluid", "fluid with temperature", "exact"}
+    assert set(labels) == {"simulation", "isothermal fluid", "fluid with a temperature", "exact"}
 
 
 @pytest.mark.parametrize("number", [3, 4])
 def test_every_column_of_panels_has_numbers_below_it(tree, number):
     """Of an odd number of panels the last one is missing."""
-    keys = ["particles", "isothermal", "evolving", "rods"][:number]
+    keys = ["simulation", "isothermal", "evolving", "rods"][:number]
     short = tree["evolving"].to_dataset().isel(time=slice(3))
     with house_style():
         figure = draw_spacetime(xr.DataTree.from_dict(dict.fromkeys(keys, short)))
@@ -157,13 +157,13 @@ def test_profiles_are_of_different_times_and_no_density_is_below_0(tree, number)
 def test_the_noise_of_a_centre_at_rest_does_not_fill_the_axis(tree):
     resting = tree["evolving"].to_dataset().isel(time=slice(3))
     resting["mean_displacement"] = 1e-9 * resting.mean_displacement
-    picture = draw_cloud(xr.DataTree.from_dict({"particles": resting, "evolving": resting}))
+    picture = draw_cloud(xr.DataTree.from_dict({"simulation": resting, "evolving": resting}))
     assert picture.axes[1].get_ylim() == (-0.1, 0.1)
 
 
 def test_the_cloud_of_the_ensemble_is_the_exact_one_within_its_error_bars(tree):
     """The errors are bounds, so three of them are more than three standard errors."""
-    found, exact = cloud(tree["particles"].to_dataset()), tree["exact"]
+    found, exact = cloud(tree["simulation"].to_dataset()), tree["exact"]
     for name in ("centre", "cloud_width"):
         off = (found[name] - exact[name]) / found[f"{name}_error"]
         assert float(np.abs(off).max()) < 3
@@ -189,9 +189,9 @@ def test_a_film_shows_all_densities_in_motion(tree):
     for picture, moment in ((0, 0), (4, -1)):
         show(picture)
         for line, key in zip(
-            ax.lines, ("particles", "isothermal", "evolving", "rods"), strict=True
+            ax.lines, ("simulation", "isothermal", "evolving", "rods"), strict=True
         ):
             density = smooth(tree[key].to_dataset()).density.isel(time=moment)
             np.testing.assert_array_equal(line.get_ydata(), density.sel(x=line.get_xdata()))
     with pytest.raises(ValueError, match=r"must be what compare_relaxation returns, got a tree"):
-        film(tree.filter(lambda node: "particles" not in node.path))
+        film(tree.filter(lambda node: "simulation" not in node.path))

@@ -27,14 +27,14 @@ const ChainTheory = (() => {
     if (ChainScales.isGas(chain)) // of two rods the energies depend on how they begin
       return chain.size < 3 ? null : { short: "equal energies", said: "", widths: lightest(chain) };
     if (chain.restitution === 1 && chain.amplitude > 0)
-      return { short: "exact", widths: Array(chain.size).fill(1), said: "" };
+      return { short: "exact equilibrium", widths: Array(chain.size).fill(1), said: "" };
     // The curves are those of A = 1; without a gap A only sets the scale.
     const stored = chain.spring === "linear" && (chain.amplitude === 1 || (chain.gap === 0 && chain.amplitude > 0));
     const found = ChainCurves.widths.find((each) =>
       ["size", "restitution", "damping", "gap"].every((name) => each[name] === chain[name]));
     if (!stored || !found) return null;
     const other = found.half.slice(0, Math.floor(chain.size / 2)).reverse();
-    return { short: "theory", said: stated(found), widths: [...found.half, ...other] };
+    return { short: found.title, said: stated(found), widths: [...found.half, ...other] };
   }
 
   /* The velocity widths of the rods of a gas, in those of the light ones, if all have the same energy. */
@@ -71,8 +71,7 @@ const ChainTheory = (() => {
   function take(chain, { refused, best, other }) {
     solved = refused ? { chain, said: `No theory: ${refused}.` } : {
       chain, said: [best, other].filter(Boolean).map(stated).join(" "), widths: best.widths, density: best.density,
-      short: best.error === 0 ? "exact" : "theory",
-      other: other && { short: other.title, density: other.density },
+      short: best.title, other: other && { short: other.title, density: other.density },
     };
   }
 
