@@ -177,7 +177,7 @@ def test_each_picture_is_described_in_numbers(browser, address):
     rows(browser, 200)
     for option, description in (
         ("density", r"Density, measured: rods .* \d+ % of the time, from x = -?\d+ to \d+ R\."),
-        ("widths", r"Velocity widths .*, measured: 0\.\d+, 0\.\d+, 0\.\d+ W; theory: 0.*\."),
+        ("widths", r"Velocity widths .*, measured: 0\.\d+, 0\.\d+, 0\.\d+ W; gas: 0.*\."),
         ("velocities", r"Velocities, measured: .* \d\.\d W in the middle and \d\.\d W at .*"),
         ("energy", r"Energy: from [\d.]+ to [\d.]+ times that of free rods within \d+ t₀\."),
     ):

@@ -220,7 +220,7 @@ const ChainPlots = (() => {
       plot.area(measured, strength(measurement), "measured");
       const errors = averaged ? [] : measurement.errors("covered"), every = Math.ceil(measured.length / 30);
       plot.bars(measured.map(([x, y], k) => (k % every ? [x, y] : barred(x, y, errors[k]))));
-      if (exact) plot.line(alike(exact), "exact equilibrium");
+      if (exact) plot.line(alike(exact), "exact");
       else if (averaged) plot.line(averaged, theory.short);
       if (averaged && theory.other) plot.line(theory.other.density, theory.other.short, [6, 3]);
       const covered = measured.filter(([, share]) => share > 0.01).map(([x]) => x), percent = Math.round(100 * most);
@@ -255,7 +255,7 @@ const ChainPlots = (() => {
         yTitle: `p(v) [${inUnits === "W" ? "1/W" : "t₀/R"}]`, powers: true,
       });
       const gauss = GAUSS.map((v) => log([v, Math.exp((-v * v) / 2) / Math.sqrt(2 * Math.PI)]));
-      if (inUnits === "W") plot.line(gauss, gas ? "Maxwell" : restitution === 1 ? "exact equilibrium" : "free rod");
+      if (inUnits === "W") plot.line(gauss, gas ? "Maxwell" : restitution === 1 ? "exact" : "free rod");
       if (!gas) plot.dots(ends, strength(measurement), "ends", true);
       plot.dots(middle, strength(measurement), gas ? "all rods" : "middle");
       if (gas) return `Velocities, ${measuredIn(measurement)}: seen up to ${slow.toFixed(1)} W.`;

@@ -27,7 +27,7 @@ const ChainTheory = (() => {
     if (ChainScales.isGas(chain)) // of two rods the energies depend on how they begin
       return chain.size < 3 ? null : { short: "equal energies", said: "", widths: lightest(chain) };
     if (chain.restitution === 1 && chain.amplitude > 0)
-      return { short: "exact equilibrium", widths: Array(chain.size).fill(1), said: "" };
+      return { short: "exact", widths: Array(chain.size).fill(1), said: "" };
     // The curves are those of A = 1; without a gap A only sets the scale.
     const stored = chain.spring === "linear" && (chain.amplitude === 1 || (chain.gap === 0 && chain.amplitude > 0));
     const found = ChainCurves.widths.find((each) =>
@@ -71,7 +71,7 @@ const ChainTheory = (() => {
   function take(chain, { refused, best, other }) {
     solved = refused ? { chain, said: `No theory: ${refused}.` } : {
       chain, said: [best, other].filter(Boolean).map(stated).join(" "), widths: best.widths, density: best.density,
-      short: best.title, other: other && { short: other.title, density: other.density },
+      short: best.error === 0 ? "exact" : best.title, other: other && { short: other.title, density: other.density },
     };
   }
 
