@@ -17,7 +17,7 @@
 # %% [markdown]
 # # One noisy oscillator
 #
-# **Question.** A rod hangs on a spring. Friction slows it, and noise shakes it. It never comes to
+# **Question.** A rod hangs on a spring. Damping slows it, and noise shakes it. It never comes to
 # rest, and it never flies away. How fast does it move? How far does it get? How soon does it forget
 # where it was? And how wrong is a simulation that moves in finite steps?
 #
@@ -40,7 +40,7 @@ from solutions import lesson_01 as solutions
 from teaching import BLUE, GREEN, ORANGE, PINK, RED, agree, check, mean_and_error, panels, safe
 
 # %% [markdown]
-# **What you may change.** The friction `damping`, from 0.2 to 4. Above 4.09 the rod creeps back to
+# **What you may change.** The `damping`, from 0.2 to 4. Above 4.09 the rod creeps back to
 # its anchor without swinging, and the steps of section 3 are then too long. Seeds may be changed,
 # too. After a change run all cells below it again.
 
@@ -87,7 +87,7 @@ plt.show()
 # \langle\xi(t)\rangle = 0,\quad \langle\xi(t)\,\xi(t')\rangle = \delta(t-t').$$
 #
 # Lengths are measured in rod radii R, masses in M, and times in $t_0=\sqrt{M/k}$. In these
-# units $k=1$ and $m=\frac{4\pi}{3}$. The friction $\gamma$ (`damping`) and the noise amplitude $A$
+# units $k=1$ and $m=\frac{4\pi}{3}$. The damping $\gamma$ (`damping`) and the noise amplitude $A$
 # are 1 unless another value is given.
 #
 # **How fast, and how far?** During a short time $dt$ the noise changes the velocity by
@@ -125,7 +125,7 @@ check(my_factors, solutions.FACTORS_OF_TWICE_THE_MASS, hint=hint, tolerance=0.01
 variants = {
     "as it is": chain,
     "mass doubled": chain.replace(mass=2 * chain.mass),
-    "friction doubled": chain.replace(damping=2 * damping),
+    "damping doubled": chain.replace(damping=2 * damping),
 }
 for name, one in variants.items():
     run = cb.simulate(one, duration=50_000, observe="widths", seed=1, progress=False)
@@ -137,8 +137,8 @@ for name, one in variants.items():
 # <details><summary>Explain</summary>
 #
 # The heavier rod is slower by the factor $\sqrt2$, but it gets just as far, because
-# $s=A/\sqrt{2\gamma k}$ does not contain the mass. Twice the friction reduces both widths by
-# $\sqrt2$, because the noise does not grow with the friction.
+# $s=A/\sqrt{2\gamma k}$ does not contain the mass. Twice the damping reduces both widths by
+# $\sqrt2$, because the noise does not grow with the damping.
 #
 # </details>
 #
@@ -160,7 +160,7 @@ for name, one in variants.items():
 # $$f = \frac{1}{2\pi W s}\,e^{-v^2/2W^2}\,e^{-x^2/2s^2}.$$
 #
 # On the right, $\partial_v f=-\frac{v}{W^2}f$. The square bracket is zero since
-# $\frac{A^2}{2m^2}=\frac\gamma m W^2$, so friction and noise balance at every $v$. On the left,
+# $\frac{A^2}{2m^2}=\frac\gamma m W^2$, so damping and noise balance at every $v$. On the left,
 # $v\,\partial_xf=-\frac{xv}{s^2}f$ and $-\frac km x\,\partial_vf=+\frac{k}{m}\frac{xv}{W^2}f$
 # cancel since $W^2=\frac km s^2$. This $f$ is therefore stationary.
 #
@@ -270,7 +270,7 @@ assert np.allclose(expected_step(*states[-1]), (x_then + dt * v_now, v_now))
 #
 # </details>
 #
-# **Predict.** Without friction a swing takes $2\pi\sqrt{m/k}\approx13$ time units. Is a twelfth of
+# **Predict.** Without damping a swing takes $2\pi\sqrt{m/k}\approx13\,t_0$. Is a twelfth of
 # it short enough for a step? Will $\langle v^2\rangle$ be too large or too small? What does half the
 # step do to the error?
 #
@@ -295,9 +295,9 @@ for parts in (12, 24, 48):
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# With a twelfth of a swing $\langle v^2\rangle$ is too large by a quarter. Half the step leaves less
-# than half of this error: the error is of first order in $\Delta t$. The error of $\langle
-# x^2\rangle$ is much smaller and of second order.
+# With a twelfth of a swing $\langle v^2\rangle$ is too large by a quarter. For short steps half the
+# step halves the error: it is of first order in $\Delta t$. The error of $\langle x^2\rangle$ is much
+# smaller and of second order.
 #
 # </details>
 #
@@ -376,7 +376,7 @@ assert np.allclose(G @ C_infinity + C_infinity @ G.T, -D)
 #
 # ## 5. A better step
 #
-# Take friction and noise alone, $m\dot v=-\gamma v+A\xi$. During $\Delta t$ friction multiplies the
+# Take damping and noise alone, $m\dot v=-\gamma v+A\xi$. During $\Delta t$ damping multiplies the
 # velocity by $c=e^{-\gamma\Delta t/m}$. The kicks add up to a Gaussian number of mean 0. Its width
 # $\sigma$ does not depend on $v$, so the velocity after the step is $v' = c\,v + \sigma\,\zeta$.
 #
@@ -385,8 +385,8 @@ assert np.allclose(G @ C_infinity + C_infinity @ G.T, -D)
 
 
 # %% tags=["hide-input"]
-def friction_and_noise(v, dt, zeta):
-    return solutions.friction_and_noise(v, dt, zeta, chain)
+def damping_and_noise(v, dt, zeta):
+    return solutions.damping_and_noise(v, dt, zeta, chain)
 
 
 pushes = [(1.0, 0.5, 0.0), (0.0, 0.5, 1.0), (-0.4, 8.0, 0.7)]
@@ -398,15 +398,15 @@ def my_exact_step(v, dt, zeta):
 
 
 hint = "The variances of c v and of sigma zeta add up to W**2: c**2 W**2 + sigma**2 = W**2."
-also = [solutions.with_other_sign(friction_and_noise)]
-check(my_exact_step, friction_and_noise, at=pushes, hint=hint, also=also)
+also = [solutions.with_other_sign(damping_and_noise)]
+check(my_exact_step, damping_and_noise, at=pushes, hint=hint, also=also)
 
 # %% tags=["remove-cell"]
 # A short step gives the kick of section 1. Two steps give what one step of twice the length gives.
-assert np.isclose(friction_and_noise(0, 1e-9, 1), A / m * np.sqrt(1e-9))
-c, kick = friction_and_noise(1, 0.3, 0), friction_and_noise(0, 0.3, 1)
-assert np.isclose(friction_and_noise(1, 0.6, 0), c**2)
-assert np.isclose(friction_and_noise(0, 0.6, 1), kick * np.sqrt(1 + c**2))
+assert np.isclose(damping_and_noise(0, 1e-9, 1), A / m * np.sqrt(1e-9))
+c, kick = damping_and_noise(1, 0.3, 0), damping_and_noise(0, 0.3, 1)
+assert np.isclose(damping_and_noise(1, 0.6, 0), c**2)
+assert np.isclose(damping_and_noise(0, 0.6, 1), kick * np.sqrt(1 + c**2))
 
 # %% [markdown]
 # <details><summary>Solution</summary>
@@ -422,8 +422,8 @@ assert np.isclose(friction_and_noise(0, 0.6, 1), kick * np.sqrt(1 + c**2))
 #
 # </details>
 #
-# The **splitting scheme** of `simulate` is symmetric in time: friction and noise over $\Delta t/2$,
-# half a spring kick, flight (in a chain: with all collisions), half a spring kick, friction and
+# The **splitting scheme** of `simulate` is symmetric in time: damping and noise over $\Delta t/2$,
+# half a spring kick, flight (in a chain: with all collisions), half a spring kick, damping and
 # noise over $\Delta t/2$.
 #
 # One step of either scheme is a linear map, $z' = \mathsf B z + \text{noise}$. The covariance matrix

@@ -250,7 +250,7 @@ for (e, runs), colour, symbol in zip(profiles.items(), (GREEN, PINK, SKY), "osD"
         f"e = {e}: W_v/W = {border:.3f} at the border, {centre:.3f} in the centre; "
         f"collisions take {100 * (1 - centre**2):.0f} % in the centre"
     )
-left.axhline(1, color="k", linewidth=1, label="e = 1, exact")
+left.axhline(1, color="k", linewidth=1, label="exact equilibrium, e = 1")
 left.axhline(1 / np.sqrt(100), color="0.4", linestyle=":", label=r"floor $1/\sqrt{L}$")
 left.set(xlabel="particle i", ylabel="velocity width $W_v/W$", ylim=(0, 1.05))
 left.legend(fontsize=9, loc="center", bbox_to_anchor=(0.5, 0.72), ncols=2)
@@ -453,7 +453,7 @@ for name, each in tau.items():
 #
 # There are avalanches of all sizes up to a hundred. But the points bend everywhere, and a fit to
 # larger sizes gives a larger $\tau$: from 1.8 to 3.8 in the centre. The distribution is no power law.
-# The paper quotes an exponent around $-2.2$ for 1000 rods. An exponent must be quoted with the range
+# The paper, which counts otherwise, quotes about $-2.2$. An exponent must be quoted with the range
 # of its fit, and here also with the time step: $\tau$ is 2.5 at 0.04 $t_0$ and 3.6 at 0.0025 $t_0$ (origins
 # in the centre, sizes 10 to 60).
 #

@@ -100,7 +100,7 @@ check(my_velocities, solutions.AFTER_THE_CRADLE, hint=hint, also=also, tolerance
 # %%
 import crazybilliards as cb
 
-free = {"amplitude": 0, "damping": 0, "stiffness": 0}  # no noise, no friction, no springs
+free = {"amplitude": 0, "damping": 0, "stiffness": 0}  # no noise, no damping, no springs
 cradle = cb.Chain(size=3, **free)
 x, v = cradle.anchors - [3.02, 0, 0], np.array([1.0, 0, 0])
 methods = ("event-driven", "contact-dynamics")
@@ -510,7 +510,7 @@ for number in (3, 5):
 #
 # </details>
 #
-# With the least space between the rods one collision comes after the other. Contact Dynamics then
+# If rods have any space between them, collisions come one after the other. Contact Dynamics then
 # needs steps so short that each has one contact. With longer ones it loses energy even at $e=1$.
 # `simulate` therefore computes collisions in their order by default.
 #

@@ -244,7 +244,7 @@ width_error = ((y - mean) ** 2).std(axis=0) / (2 * width * np.sqrt(draws))
 sorting = {"mean_displacement": (mean, mean_error), "displacement_width": (width, width_error)}
 axes = panels(2, height=3.4)
 for ax, (name, (value, error)) in zip(axes, sorting.items(), strict=True):
-    ax.plot(exact.particle, exact[name] / s, color=ORANGE, linewidth=2.5, label="equilibrium")
+    ax.plot(exact.particle, exact[name] / s, color=ORANGE, linewidth=2.5, label="exact equilibrium")
     ax.plot(run.particle, run[name] / s, "o", color="k", mfc="none", ms=8, label="simulation")
     ax.plot(run.particle, value / s, "x", color=BLUE, ms=5, label="sorted random numbers")
     ax.set(xlabel="particle i")
@@ -271,7 +271,7 @@ agree("rods in a bin, sorting", count[likely], draws * chance[likely], coin)
 ax = panels(width=9, height=3.4)
 heights = count / draws / np.diff(edges)
 ax.stairs(heights, edges, color=BLUE, fill=True, alpha=0.4, label="sorted random numbers")
-ax.plot(exact.x, exact.density, color=ORANGE, linewidth=2, label="equilibrium")
+ax.plot(exact.x, exact.density, color=ORANGE, linewidth=2, label="exact equilibrium")
 ax.plot(run.x[::2], run.density[::2], "o", color="k", mfc="none", ms=4, label="simulation")
 ax.set(xlim=(0, chain.anchors[-1] + 7 * s), ylim=(0, 1.25 * exact.density.max()))
 ax.set(xlabel="position x [R]", ylabel=r"density $\rho$ [1/R]")
@@ -567,7 +567,7 @@ assert abs(exact_v2.min() / W**2 - 0.54) < 0.01
 #
 # The cloud hardly overshoots. The springs are too weak to hold the velocities
 # of the squeezed cloud, so it expands. As it does, the springs take energy out of the velocities.
-# The cloud cools to about half of $W^2$, because the noise replaces energy only at the rate
+# $\langle v^2\rangle$ falls to about $W^2/2$, because the noise replaces energy only at the rate
 # $2\gamma/m$.
 #
 # </details>
@@ -581,8 +581,8 @@ assert abs(exact_v2.min() / W**2 - 0.54) < 0.01
 #
 # <details><summary>Solution</summary>
 #
-# Independent draws from $\exp(-k|y|^3/3T)$, since $U = k|d|^3/3$. This is `scipy.stats.gennorm(3,
-# scale=(3 * T / k) ** (1 / 3))`. The largest of 20 draws has the mean 1.240 R.
+# Independent draws from $\exp(-k|y|^3/3T)$ with $T = mW^2$, since $U = k|d|^3/3$. This is
+# `scipy.stats.gennorm(3, scale=(3 * T / k) ** (1 / 3))`. The largest of 20 draws has the mean 1.240 R.
 # `cb.equilibrium(cb.Chain(size=20, spring="quadratic"))` has the same `mean_displacement[-1]`.
 #
 # </details>

@@ -185,7 +185,7 @@ agree("velocity widths of all rods", run.velocity_width, W, run.velocity_width_e
 # %% tags=["hide-input"]
 ax = panels(width=8, height=3.4)
 ax.plot(run.x, run.density, color="0.45", linewidth=1.2, label="simulation")
-ax.plot(fluid.x, fluid.density, color=BLUE, linewidth=2, label="force balance (fluid)")
+ax.plot(fluid.x, fluid.density, color=BLUE, linewidth=2, label="force balance")
 ax.axhline(chain.close_packed_density, color="0.6", linewidth=1, linestyle="--")
 end = chain.anchors[-1] + 5 * s
 ax.text(end, chain.close_packed_density + 0.01, "close packing", color="0.4", ha="right")
@@ -301,8 +301,8 @@ for name, off in (("fluid", before), ("rods", after)):
 # %% tags=["hide-input"]
 ax = panels(width=8, height=3.4)
 ax.plot(run.x, run.density, color="0.7", linewidth=4, label="simulation")
-ax.plot(fluid.x, fluid.density, color=BLUE, linewidth=1.5, label="the points read as a fluid")
-ax.plot(rods.x, rods.density, color=ORANGE, linewidth=1.5, label="the points read as rods")
+ax.plot(fluid.x, fluid.density, color=BLUE, linewidth=1.5, label="force balance")
+ax.plot(rods.x, rods.density, color=ORANGE, linewidth=1.5, label="force balance, rod by rod")
 ax.set(xlim=(0, end), ylim=(0, 1.25 * run.density.max()))
 ax.set(xlabel="position x [R]", ylabel=r"density $\rho$ [1/R]")
 ax.legend(ncols=3, loc="upper center")

@@ -73,7 +73,7 @@ if not safe(
 # \qquad W_0^2=\frac{A^2}{2m\gamma}.$$
 #
 # Its first term is the adiabatic law of a gas with one degree of freedom: what expands cools. The
-# second term is the exchange of heat with noise and friction.
+# second term is the exchange of heat with noise and damping.
 #
 # Squeeze a chain on springs and let go, as in
 # [lesson 4](04_the_elastic_chain_is_exactly_solvable.ipynb), section 7. In the coordinate $y$, where
@@ -89,11 +89,11 @@ if not safe(
 import crazybilliards as cb
 
 chain = cb.Chain(size=50)
-s, W, friction = chain.thermal_length, chain.free_velocity_width, chain.damping / chain.mass
+s, W, Gamma = chain.thermal_length, chain.free_velocity_width, chain.damping / chain.mass
 
 
 def my_heat_rate(sigma, sigma_rate, heat):
-    return ...  # your code here: from these, W and friction, which is gamma/m
+    return ...  # your code here: from these, W and Gamma, which is gamma/m
 
 
 clouds = [(s, 0.0, 2 * W**2), (s, W, W**2), (0.5 * s, -W, 0.3 * W**2)]
@@ -105,7 +105,7 @@ check(my_heat_rate, lambda *cloud: solutions.heat_rate(*cloud, chain), at=clouds
 #
 # ```python
 # def my_heat_rate(sigma, sigma_rate, heat):
-#     return -2 * heat * sigma_rate / sigma - 2 * friction * (heat - W**2)
+#     return -2 * heat * sigma_rate / sigma - 2 * Gamma * (heat - W**2)
 # ```
 #
 # </details>
@@ -129,7 +129,7 @@ choose(my_choice, *fluids, right=solutions.OVERSHOOTS, hint=hint)
 def rates(t, state, exchange):
     sigma, rate, heat = state
     warming = solutions.heat_rate(sigma, rate, heat, chain) if exchange else 0.0
-    return rate, heat / sigma - (W / s) ** 2 * sigma - friction * rate, warming
+    return rate, heat / sigma - (W / s) ** 2 * sigma - Gamma * rate, warming
 
 
 squeeze, times = 0.3, np.linspace(0, 24, 49)
@@ -147,7 +147,7 @@ settings = {"duration": 24, "every": 0.5, "average": "ensemble", "progress": Fal
 run = cb.simulate(chain, start=start, replicas=copies, observe="widths", seed=4, **settings)
 cloud = np.sqrt((run.mean_displacement**2 + run.displacement_width**2).mean("particle"))
 points = copies * chain.size  # independent Gaussian points
-agree("widths of rods and warm fluid", cloud / warm[0], 1, 1 / np.sqrt(2 * points))
+agree("widths of rods and fluid", cloud / warm[0], 1, 1 / np.sqrt(2 * points))
 
 # %% tags=["hide-input"]
 left, right_panel = panels(2, height=3.4)
@@ -189,7 +189,7 @@ kappa = np.pi / room  # of the longest wave
 
 
 def gas(ratio):
-    """Return rods between walls, with T = 1, the mean mass 1, and hardly any noise and friction."""
+    """Return rods between walls, with T = 1, the mean mass 1, and hardly any noise and damping."""
     damping = 0.001 * kappa
     kinds = {"mass": 2 / (1 + ratio), "mass_ratio": ratio, "stiffness": 0, "box": room + 2 * L}
     return cb.Chain(size=L, damping=damping, amplitude=np.sqrt(2 * damping), **kinds)
@@ -197,7 +197,7 @@ def gas(ratio):
 
 # %%
 def follow(chain, start, duration):
-    """Return y and v over 25 times, replica and rod, without noise and friction."""
+    """Return y and v over 25 times, replica and rod, without noise and damping."""
     chain = chain.replace(damping=0, amplitude=0)
     times = {"duration": duration, "every": duration / 24, "time_step": duration / 24}
     settings = {"replicas": start.sizes["replica"], "average": "ensemble", "progress": False}
@@ -210,7 +210,7 @@ def follow(chain, start, duration):
 # ## 2. Rods of one mass
 #
 # At the start all rods are in the left half of the free length, with Maxwell's velocities. There is
-# no noise and no friction.
+# no noise and no damping.
 #
 # **Predict.** Will the gas slosh, so that for some time more than half of the rods are on the right?
 # Or will it only spread?
@@ -310,13 +310,13 @@ plt.show()
 #
 # $$\dot r = -u,\qquad \dot u = r + \theta - \Gamma u,\qquad \dot\theta = -2u - 2\Gamma_T\theta .$$
 #
-# Here $\Gamma$ is the rate of friction. The noise exchanges heat at the rate $2\Gamma_T$.
+# Here $\Gamma$ is the rate of damping. The noise exchanges heat at the rate $2\Gamma_T$.
 #
 # **Your turn.** Write the matrix of these equations for the vector $(r, u, \theta)$.
 
 
 # %%
-def my_matrix(friction, heat):  # Gamma and Gamma_T
+def my_matrix(damping, heat):  # Gamma and Gamma_T
     return ...  # your code here
 
 
@@ -327,8 +327,8 @@ check(my_matrix, solutions.wave_matrix, at=[(0.0, 0.0), (0.2, 0.3)], hint=hint)
 # <details><summary>Solution</summary>
 #
 # ```python
-# def my_matrix(friction, heat):
-#     return np.array([[0, -1, 0], [1, -friction, 1], [0, -2, -2 * heat]])
+# def my_matrix(damping, heat):
+#     return np.array([[0, -1, 0], [1, -damping, 1], [0, -2, -2 * heat]])
 # ```
 #
 # </details>
@@ -344,7 +344,7 @@ for name, part in {"isothermal fluid": M[:2, :2], "fluid with a temperature": M}
 # %% [markdown]
 # A temperature that stays constant needs an exchange of heat that is faster than the wave,
 # $2\Gamma_T\gg1$. Rods of one mass have $\Gamma_T=\Gamma$, and with $\Gamma > 2$ the isothermal wave
-# does not swing at all. So noise and friction never give them isothermal sound.
+# does not swing at all. So noise and damping never give them isothermal sound.
 #
 # Now watch the longest wave in the rods. Its momentum is $p = \sum_i m_iv_i\sin\kappa(y_i+\frac
 # l2)$. A gas at rest has small random waves, and $C(t) = \langle p(t)\,p(0)\rangle/\langle
@@ -373,7 +373,7 @@ def fluids(times):
 
 
 # %% [markdown]
-# **Predict.** For rods of one mass without friction the density of the wave decays as $e^{-t^2/2}$
+# **Predict.** For rods of one mass without damping the density of the wave decays as $e^{-t^2/2}$
 # (section 2, $t$ in units of $1/\kappa W$). What follows for $C(t)$, if $\dot r=-u$?
 #
 # **Run.**
@@ -442,9 +442,9 @@ for masses in (1, 100, 10_000, 1_000_000):
 # %% [markdown]
 # <details><summary>Explain</summary>
 #
-# The counts are the digits of $\pi$. Energy $v_1^2 + rv_2^2$ is a circle in the plane of $v_1$ and
-# $\sqrt r\,v_2$. Two hits turn the point on it by twice the angle $\arctan\sqrt{1/r}$, until it has
-# gone half the way round.
+# The counts are the digits of $\pi$. At the mass ratio $r$ the energy is a circle in the plane of
+# $v_1$ and $\sqrt r\,v_2$. Two hits turn the point on it by twice the angle $\arctan\sqrt{1/r}$,
+# until it has gone half the way round.
 #
 # </details>
 #
@@ -454,7 +454,7 @@ for masses in (1, 100, 10_000, 1_000_000):
 # ## 5. Sound
 #
 # **Predict.** Will $C(t)$ of two masses follow one of the fluids? Which one, without noise and
-# friction?
+# damping?
 #
 # Waves of rods become lower with each swing. Fit a damped wave,
 # $\ddot C + 2\beta\dot C + (\omega^2+\beta^2)\,C = 0$. It begins at $C = 1$, and with the slope 0,
@@ -494,17 +494,17 @@ def fitted(p):
 
 p_two = momentum(ratio)
 choices = np.random.default_rng(5).integers(0, p_two.shape[1], (100, p_two.shape[1]))
-speed, damping = fitted(p_two)
+speed, decay = fitted(p_two)
 scatter = np.std([fitted(p_two[:, each])[0] for each in choices])
 speed_error = np.hypot(scatter, 0.01 * speed)
-print(f"speed of sound: {speed:.3f} ± {speed_error:.3f} W; damping {damping:.2f} kappa W")
+print(f"speed of sound: {speed:.3f} ± {speed_error:.3f} W; damping {decay:.2f} kappa W")
 agree("speed of sound, fluid with a temperature", speed, np.sqrt(3), speed_error, unit="W")
 
 # %% tags=["hide-input"]
 axes = panels(2, height=3.6, sharey=True)
 fine = np.linspace(0, tau[-1], 200)
 law = (1 - fine**2) * np.exp(-(fine**2) / 2)
-fit = solutions.damped_wave(fine, speed, damping)
+fit = solutions.damped_wave(fine, speed, decay)
 C_two, error_two = correlation(p_two)
 shown = (
     ("one mass", C_one, error_one, law, ":", RED, "exact"),
@@ -530,8 +530,8 @@ assert apart < 1e-4
 # <details><summary>Explain</summary>
 #
 # The sound of two masses has the speed $\sqrt3\,W$ of the fluid with a temperature. The isothermal
-# fluid of the paper is wrong here: nothing takes the heat away that compression makes. Viscosity and
-# heat conduction damp the wave, which the fluid does not have. With more rods they damp less.
+# fluid of the paper is wrong here: nothing takes the heat away that compression makes. The fluid
+# lacks viscosity and heat conduction, which damp the rods' wave. With more rods they damp less.
 #
 # So a gas is a fluid if its collisions *mix* the velocities faster than the wave changes. In one
 # dimension equal masses do not mix, however often they collide.
@@ -551,7 +551,7 @@ assert apart < 1e-4
 # tree = cb.compare_relaxation(gas(ratio), "gathered", 0.5, replicas=200, **times)
 # for name in ("isothermal", "evolving"):
 #     plt.plot(tree[name].time / room, tree[name].centre / room, label=name)
-# rods = tree["particles"]
+# rods = tree["simulation"]
 # plt.plot(rods.time / room, rods.mean_displacement.mean("particle") / room, "o", label="rods")
 # plt.legend()
 # ```

@@ -24,7 +24,7 @@
 #
 # Lengths are in rod radii $R$, masses in $M$ (a rod has $m = \frac{4\pi}3 M$), times in $t_0 =
 # \sqrt{M/k}$. A collision gives $v_1' - v_2' = -e(v_1 - v_2)$. A single rod has the velocity width $W
-# = A/\sqrt{2m\gamma}$ and the displacement width $s = W\sqrt{m/k}$.
+# = A/\sqrt{2m\gamma}$ and the thermal length $s = W\sqrt{m/k}$.
 #
 # *90 minutes. `make lessons` writes copies without outputs and solutions.*
 #
@@ -32,7 +32,7 @@
 # <a href="../docs/chain.md#preset=loss">the velocity widths</a> of 100 rods that you expect, then set
 # $e$.
 #
-# **What you may change.** The `friction`, from 0.5 to 2, and all seeds. After a change run all cells
+# **What you may change.** The `damping`, from 0.5 to 2, and all seeds. After a change run all cells
 # below it again.
 
 # %% tags=["hide-input"]
@@ -53,15 +53,15 @@ warnings.simplefilter("ignore", UnmeasuredWarning)
 warnings.simplefilter("ignore", DivergedWarning)
 
 # %%
-friction = 1
+damping = 1
 
 # %% tags=["hide-input"]
 if not safe(
-    0.5 <= friction <= 2,
-    f"This lesson is for friction from 0.5 to 2, not {friction}: its runs are too short for less, "
-    "and more hides what collisions do. The lesson goes on with friction = 1.",
+    0.5 <= damping <= 2,
+    f"This lesson is for damping from 0.5 to 2, not {damping}: its runs are too short for less, "
+    "and more hides what collisions do. The lesson goes on with damping = 1.",
 ):
-    friction = 1
+    damping = 1
 
 # %% [markdown]
 # ## 1. A collision, seen differently
@@ -213,7 +213,7 @@ choose(my_choice, *ways, right=solutions.HEAT_FLOWS, hint="Which rods have few n
 import crazybilliards as cb
 
 settings = {"replicas": 2, "seed": 1, "progress": False}
-chains = {e: cb.Chain(size=100, restitution=e, damping=friction) for e in (0.95, 0.5)}
+chains = {e: cb.Chain(size=100, restitution=e, damping=damping) for e in (0.95, 0.5)}
 observe, runs = ["widths", "covariances"], {}
 for e, chain in chains.items():
     runs[e] = cb.simulate(chain, duration=1000, every=0.5, observe=observe, **settings)
@@ -297,10 +297,10 @@ check(my_change_of_product, solutions.change_of_product, at=pairs, hint=hint)
 
 # %%
 remembering = {e: cb.steady_state(chain) for e, chain in chains.items()}
-widths = {"mean field": own[0.5], "with memory": remembering[0.5].velocity_width.values / W}
+widths = {"mean field": own[0.5], "gas": remembering[0.5].velocity_width.values / W}
 for name, width in widths.items():
     print(f"e = 0.5, centre, {name}: W_v {100 * off(width, runs[0.5])[42:54].mean():+.0f} %")
-for name, result in (("simulation", runs[0.5]), ("with memory", remembering[0.5])):
+for name, result in (("simulation", runs[0.5]), ("gas", remembering[0.5])):
     covariance = result.neighbour_covariance[44:55].mean().item()
     square = (result.velocity_width[44:56] ** 2).mean().item()
     print(f"e = 0.5, centre, {name}: Theta is {1 - covariance / square:.2f} of <v_i^2>")
@@ -320,12 +320,12 @@ for e, colour in ((0.95, PINK), (0.5, GREEN)):
     other.plot(particle[:-1], seen, "o", color=colour, mfc="none", ms=3, label=f"e = {e}")
     other.plot(particle[:-1], theory, color=colour)
 other.set(xlabel="particle i", ylabel=r"$\langle v_iv_{i+1}\rangle/W^2$", ylim=(0, None))
-other.set_title("symbols: simulation; lines: with memory")
+other.set_title("symbols: simulation; lines: gas")
 other.legend(loc="upper center")
 plt.show()
 
 # %% tags=["remove-cell"]
-for name, least, most in (("mean field", -0.24, -0.1), ("with memory", -0.06, 0.06)):
+for name, least, most in (("mean field", -0.24, -0.1), ("gas", -0.06, 0.06)):
     assert least < off(widths[name], runs[0.5])[42:54].mean() < most
 
 # %% [markdown]

@@ -14,8 +14,8 @@ def euler_step(x, v, dt, zeta, chain):
     return x + dt * v, v
 
 
-def friction_and_noise(v, dt, zeta, chain):
-    """Return the velocity after friction and noise have acted for the time dt, exactly."""
+def damping_and_noise(v, dt, zeta, chain):
+    """Return the velocity after damping and noise have acted for the time dt, exactly."""
     c = np.exp(-chain.damping * dt / chain.mass)
     return c * v + chain.free_velocity_width * np.sqrt(1 - c**2) * zeta
 

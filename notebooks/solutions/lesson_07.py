@@ -19,9 +19,9 @@ def mirrored(y, low, high):
     return low + np.minimum(way, 2 * room - way)
 
 
-def wave_matrix(friction, heat):
+def wave_matrix(damping, heat):
     """Return the matrix of density, velocity and temperature of a wave; rates in kappa W."""
-    return np.array([[0, -1, 0], [1, -friction, 1], [0, -2, -2 * heat]])
+    return np.array([[0, -1, 0], [1, -damping, 1], [0, -2, -2 * heat]])
 
 
 def collision(v1, v2, m1, m2):
