@@ -17,6 +17,7 @@ import qr_code
 from installation import FOLDERS, ROOT
 
 import crazybilliards as cb
+from crazybilliards.comparison.stationary_theories import TITLES
 from crazybilliards.model.vocabulary import VOCABULARY
 from crazybilliards.reproduction.figures import FIGURES
 
@@ -161,10 +162,9 @@ def test_the_qr_code_leads_to_the_documentation_that_the_project_names():
 
 
 @pytest.mark.compiled
-def test_the_script_of_the_readme_draws_its_picture(tmp_path, monkeypatch):
+def test_the_script_of_the_readme_draws_its_picture_with_our_names(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    [script] = re.findall(
-        r"```python\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL
-    )
-    exec(script, {})
+    _, begun = (ROOT / "README.md").read_text("utf-8").split("```python\n")
+    exec(begun.partition("```")[0], made := {})
     assert (tmp_path / "density.png").read_bytes().startswith(b"\x89PNG")
+    assert set(made["results"]) <= set(TITLES.values())
