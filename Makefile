@@ -27,7 +27,7 @@ help:
 	@echo "make run        compare simulation and theory at e = 1; figures into $(OUTPUT)/"
 	@echo "make test       run the tests that are quick (2 min)"
 	@echo "make validate   run the others: statistics, long runs, kills, wheel, the page in a browser (3 min)"
-	@echo "make cluster    run that of sweeps on a dask cluster (1 min)"
+	@echo "make cluster    run that of sweeps on a dask cluster (half a minute)"
 	@echo "make test-lowest  run the tests with the oldest allowed version of every package"
 	@echo "make torture    test kills, full disks, bad input and long runs (15 min; docs/reliability.md)"
 	@echo "make coverage   show which lines the tests reach, kernels included (14 min)"
