@@ -367,8 +367,8 @@ distance, step = 18 * R, R / 4
 edges = -X / 2 + np.arange(0, distance + step, step)
 counts = np.histogram(drawn.ravel(), edges)[0] / len(drawn) / step
 at_wall.stairs(2 * R * counts, edges + X / 2, color="0.6", fill=True, label="sorted numbers")
-near = exact.x < -X / 2 + distance
-at_wall.plot(exact.x[near] + X / 2, 2 * R * exact.density[near], color=RED, label="exact equilibrium")
+near = exact.sel(x=slice(-X / 2 + distance))
+at_wall.plot(near.x + X / 2, 2 * R * near.density, color=RED, label="exact equilibrium")
 low = np.arange(0, distance, step)
 seen = [run.density.sel(x=slice(a, a + step)).mean().item() for a in low - X / 2]
 at_wall.plot(low + step / 2, 2 * R * np.array(seen), "ko", fillstyle="none", label="rods")
