@@ -53,7 +53,7 @@ def test_it_is_where_the_gas_in_time_comes_to_rest(size, restitution, monkeypatc
 def test_it_is_that_of_simulated_independent_points():
     chain = Chain(size=20, restitution=0.7)
     place, T, error = rods_of_independent_points(
-        20, 0.7, chain.relative_damping, number=6000, duration=100, warmup=20, seed=1
+        20, 0.7, chain.relative_damping, number=4000, duration=100, warmup=20, seed=1
     )
     found, own = mean_field(chain)
     off, error = np.sqrt(own / T) - 1, error / T / 2

@@ -41,7 +41,7 @@ def rods_of_independent_points(size, restitution, damping, number, duration, war
 def _collided(y, v, size, restitution, rng):
     cell = np.floor(y / CELL).astype(int)
     cell -= cell.min()
-    order, count = np.argsort(cell), np.bincount(cell)
+    order, count = np.argsort(cell.astype(np.int16), kind="stable"), np.bincount(cell)
     first = np.cumsum(count) - count
     others = order[first[cell] + (rng.random(y.size) * count[cell]).astype(int)]
     w = v - v[others]
