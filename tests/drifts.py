@@ -6,24 +6,17 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.dynamics import make_dynamics
-from crazybilliards.particles.laws import law as laws
 from crazybilliards.particles.laws.avalanche import make_tally, make_waves
 from crazybilliards.particles.laws.impacts import make_impacts
 from crazybilliards.particles.laws.law import CONTACTS, EVENTS, Law, make_scratch
 from crazybilliards.particles.laws.unequal import row_restitution
 from crazybilliards.particles.noise import make_noise
 from crazybilliards.particles.stepping import advance
+from studies.time_step import drift
 
 OPERATORS = (EVENTS, CONTACTS)  # for any restitution
 UNSEEN = make_tally(2, contacts=False)
-
-
-@kernel
-def drift(y, v, anchors, dt, law, scratch, tally):
-    """Do what the one of the laws does, which is a part of kernels and in no cache of its own."""
-    return laws.drift(y, v, anchors, dt, law, scratch, tally)
 
 
 def everything(size):
