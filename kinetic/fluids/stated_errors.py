@@ -177,6 +177,7 @@ def _share_below(at: Array, mean: Array, width: Array, wall: float) -> Array:
     """Return which share of normal points is below some places; walls at +-wall fold their laws."""
     end = min(wall, float(np.abs([at[0], at[-1], *(np.abs(mean) + _FARTHEST * width)]).max()))
     k = np.pi * np.arange(1, _WAVES + 1) / (2 * end)
+    k = k[k * width.min() < 9]  # shorter waves are below rounding
     waves = (np.cos(np.outer(k, mean + end)) * np.exp(-(np.outer(k, width) ** 2) / 2)).mean(axis=1)
     place = np.clip(at + end, 0, 2 * end)
     return np.asarray(place / (2 * end) + (waves / (k * end)) @ np.sin(np.outer(k, place)))
