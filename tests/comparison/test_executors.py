@@ -13,7 +13,7 @@ from crazybilliards.comparison.sweeps import Case, process_pool, processes, run_
 from crazybilliards.model import Chain
 
 QUIET = {"progress": False}
-CASES = [Case("simulate", Chain(size=20), {"duration": 5_000, "seed": seed}) for seed in range(4)]
+CASES = [Case("simulate", Chain(size=20), {"duration": 5_000, "seed": seed}) for seed in range(3)]
 pytestmark = pytest.mark.compiled
 
 

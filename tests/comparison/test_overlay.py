@@ -196,12 +196,12 @@ def test_a_figure_is_one_or_two_columns_wide_with_letters_of_8_points(columns, w
 # Settings of a reader that no picture in a file depends on. "dark_background" is a style.
 HOSTILE = {
     "no LaTeX": {"text.usetex": True, "text.latex.preamble": r"\nonsense"},
-    "letters": {"font.size": 30, "font.family": "cursive", "axes.unicode_minus": False},
-    "lines": {"axes.prop_cycle": plt.cycler(color=["w"]), "lines.linewidth": 9, "axes.grid": True},
-    "files": {"savefig.format": "pdf", "savefig.bbox": "tight", "savefig.transparent": True},
-    "dots": {"figure.dpi": 5, "savefig.dpi": 5, "path.sketch": (9, 9, 9), "interactive": True},
-    "dark": mpl.style.library["dark_background"],
-    "films": {"animation.writer": "html", "animation.bitrate": 1, "animation.codec": "nonsense"},
+    "lines and letters": {"font.size": 30, "font.family": "cursive", "axes.unicode_minus": False}
+    | {"axes.prop_cycle": plt.cycler(color=["w"]), "lines.linewidth": 9, "axes.grid": True}
+    | {"savefig.format": "pdf", "savefig.bbox": "tight", "savefig.transparent": True},
+    "dark": mpl.style.library["dark_background"]
+    | {"figure.dpi": 5, "savefig.dpi": 5, "path.sketch": (9, 9, 9), "interactive": True}
+    | {"animation.writer": "html", "animation.bitrate": 1, "animation.codec": "nonsense"},
 }
 
 

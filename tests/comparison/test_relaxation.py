@@ -35,7 +35,7 @@ def columns_without_numbers(figure):
 
 @pytest.fixture(scope="module")
 def tree():
-    how = {"duration": 10, "every": 1, "replicas": 1000, "progress": False}
+    how = {"duration": 10, "every": 1, "replicas": 400, "progress": False}
     return compare_relaxation(Chain(size=20, amplitude=20), "compressed", 0.3, **how)
 
 
@@ -46,10 +46,8 @@ def test_the_isothermal_fluid_is_wrong_and_the_one_with_temperature_right(tree):
     assert distances["exact"] < 0.05
     # Rod by rod the fluid with a temperature is exact: what is left is the grid.
     rods, exact = tree["rods"].mean_displacement, tree["exact"].mean_displacement
-    assert (
-        float(np.abs(rods - exact).max())
-        < 1e-3 * chain_of(tree["rods"].to_dataset()).thermal_length
-    )
+    s = chain_of(tree["rods"].to_dataset()).thermal_length
+    assert float(np.abs(rods - exact).max()) < 1e-3 * s
 
 
 def test_with_a_gap_the_fluid_with_temperature_stays_close():
@@ -62,7 +60,7 @@ def test_with_a_gap_the_fluid_with_temperature_stays_close():
 
 
 def test_inelastic_chains_are_followed_by_the_fluid_with_temperature_and_heat_flux():
-    chain = Chain(size=30, restitution=0.95, amplitude=20)
+    chain = Chain(size=20, restitution=0.95, amplitude=20)
     how = {"duration": 10, "replicas": 200, "progress": False}
     tree = compare_relaxation(chain, "compressed", 0.8, **how)
     assert set(tree.children) == {"simulation", "evolving", "rods"}
@@ -83,7 +81,7 @@ GAS = Chain(size=20, box=80, stiffness=0, mass=1, damping=0.01, amplitude=0.02**
 @cache
 def released(chain, release, by):
     """Follow a gas in a box until its points have crossed it; do not change what is returned."""
-    how = {"duration": 24, "every": 8, "replicas": 400, "progress": False}
+    how = {"duration": 24, "every": 8, "replicas": 200, "progress": False}
     return compare_relaxation(chain, release, by, **how)
 
 
@@ -103,7 +101,8 @@ def test_a_gas_in_a_box_moves_as_its_points_do_and_not_as_a_fluid(release, by):
     assert float(np.abs(tree["rods"].mean_displacement[0] - start).max()) < 0.02 * h
     if release != "quenched":  # which leaves the density even
         assert tree["isothermal"].attrs["wave_model_error"] > 0.4
-        assert label_distances(tree)["isothermal"] > 2 * label_distances(tree)["exact"]
+        distances = label_distances(tree)
+        assert distances["isothermal"] > 2 * distances["exact"]
 
 
 @pytest.mark.filterwarnings("ignore:equal elastic rods")
@@ -146,7 +145,7 @@ def test_every_column_of_panels_has_numbers_below_it(tree, number):
         assert columns_without_numbers(figure) == []
 
 
-@pytest.mark.parametrize("number", [1, 2, 3, 4, 7])
+@pytest.mark.parametrize("number", [1, 3, 7])
 def test_profiles_are_of_different_times_and_no_density_is_below_0(tree, number):
     short = tree.map_over_datasets(lambda each: each.isel(time=slice(number)) if each else each)
     axes = draw_profiles(short).axes
@@ -175,9 +174,8 @@ def test_what_is_stored_is_a_tenth_and_drawn_like_the_whole(tree, tmp_path):
     whole = save(tree, tmp_path / "whole.nc")
     assert (tmp_path / "stored.nc").stat().st_size < whole.stat().st_size / 10
     assert label_distances(stored) == label_distances(tree)
-    for kept, drawn in zip(
-        draw_profiles(stored).axes[0].lines, draw_profiles(tree).axes[0].lines, strict=True
-    ):
+    pairs = zip(*(draw_profiles(each).axes[0].lines for each in (stored, tree)), strict=True)
+    for kept, drawn in pairs:
         ours, theirs = (np.asarray(line.get_ydata(), dtype=float) for line in (kept, drawn))
         np.testing.assert_allclose(ours, theirs, rtol=1e-6, atol=1e-9)
 

@@ -11,7 +11,7 @@ from small_sweeps import AtOnce, missing_cases, sweep
 
 import crazybilliards as cb
 from crazybilliards.comparison.stationary_theories import THEORIES
-from crazybilliards.comparison.sweeps import Case, Sweep, run_cases
+from crazybilliards.comparison.sweeps import Case, Sweep, run_cases, running
 from crazybilliards.comparison.sweeps.case import JOBS, compute
 from crazybilliards.model import Chain
 from crazybilliards.model.fingerprint import room_fingerprint
@@ -149,15 +149,16 @@ def test_nothing_is_submitted_to_a_pool_that_broke(raised, tmp_path):
     assert len(pool.futures) == 1
 
 
-def test_few_of_many_cases_are_submitted_at_a_time_and_ctrl_c_cancels_them(tmp_path):
+def test_few_of_many_cases_are_submitted_at_a_time_and_ctrl_c_cancels_them(tmp_path, monkeypatch):
     def interrupted(futures, _):
-        if len(futures) == 1000:
+        if len(futures) == 50:
             futures[-1].set_exception(KeyboardInterrupt())
 
-    pool, many = Scripted(interrupted), Sweep({"amplitude": np.linspace(1, 2, 3000)}, "equilibrium")
+    monkeypatch.setattr(running, "_MOST_UNDER_WAY", 50)
+    pool, many = Scripted(interrupted), Sweep({"amplitude": np.linspace(1, 2, 150)}, "equilibrium")
     with pytest.raises(KeyboardInterrupt):
         run_cases(many, tmp_path, pool, **QUIET)
-    assert [future.cancelled() for future in pool.futures] == 999 * [True] + [False]
+    assert [future.cancelled() for future in pool.futures] == 49 * [True] + [False]
 
 
 def test_a_wrong_case_at_the_end_of_a_grid_is_found_before_any_work(tmp_path):

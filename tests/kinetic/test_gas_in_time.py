@@ -102,15 +102,9 @@ def test_the_kinetic_energy_is_that_of_simulated_chains(chain, replicas):
     states = equilibrium_states(elastic, replicas, seed=1)
     y = factor * elastic.reduced(states.position.values)
     times = {"duration": 8.0, "every": 1.0, "progress": False}
-    run = simulate(
-        chain,
-        start=states.assign(position=(states.position.dims, elastic.physical(y))),
-        replicas=replicas,
-        average="ensemble",
-        observe="energy",
-        seed=2,
-        **times,
-    )
+    start = states.assign(position=(states.position.dims, elastic.physical(y)))
+    how = {"replicas": replicas, "average": "ensemble", "observe": "energy", "seed": 2}
+    run = simulate(chain, start=start, **how, **times)
     flow = hydrodynamics(chain, compressed(chain, factor), velocity_variance="evolving", **times)
     off, energy = np.abs(flow.kinetic_energy - run.kinetic_energy), run.kinetic_energy
     assert (off < 5 * run.kinetic_energy_error + 0.005 * energy).all()  # the theory's own error

@@ -75,7 +75,7 @@ def test_what_was_not_measured_is_unknown(changes):
 def test_results_state_the_errors_of_all_quantities_and_warn_of_unknown_ones():
     chain = Chain(size=10, restitution=0.9)
     names = [f"{quantity}_model_error" for quantity in QUANTITIES]
-    found = [steady_state(chain).attrs[each] for each in names]
+    found = list(map(steady_state(chain).attrs.get, names))
     np.testing.assert_array_equal(found, stated(chain))
     assert np.isfinite(found[:5]).all()
     assert np.isnan(found[5])  # there is no wall

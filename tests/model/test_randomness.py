@@ -22,7 +22,7 @@ def test_a_sequence_means_its_number():
         partial(simulate, CHAIN, **SHORT),
         partial(equilibrium_states, CHAIN, 2),
         partial(compare, CHAIN, {"amplitude": [2.0]}, **SHORT),
-        partial(compare_relaxation, CHAIN, duration=1.0, replicas=2, progress=False),
+        partial(compare_relaxation, CHAIN, duration=1.0, every=1.0, replicas=2, progress=False),
     ):
         five, six = (function(seed=np.random.SeedSequence(number)) for number in (5, 6))
         assert five.identical(function(seed=5))

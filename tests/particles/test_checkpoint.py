@@ -36,7 +36,7 @@ INTERRUPTED = {  # the run, and what was called how often when Ctrl-C comes
         (Widths, "observe", 250),  # of 550
     ),
     "between snapshots far apart": (
-        Chain(size=50, spring="quadratic"),
+        Chain(size=20, spring="quadratic"),
         {"duration": 4e4, "every": 2e4, "average": "ensemble", "observe": ("widths", "energy")},
         (Replica, "_advance", 3),
     ),

@@ -90,7 +90,7 @@ def test_without_noise_the_error_of_the_force_is_that_of_its_ends(size, ratio):
     chain = gas(size, damping=0, mass_ratio=ratio)
     rng = np.random.default_rng(size)
     pulls, how = [], {"duration": 100, "every": 1, "observe": "walls"}
-    for _ in range(80):
+    for _ in range(40):
         velocity = rng.normal(size=size) / np.sqrt(chain.rod_masses)
         law = (chain.rod_masses * velocity**2).sum() / ROOM
         position = chain.physical(np.sort(rng.uniform(*chain.walls, size)))

@@ -61,9 +61,9 @@ def test_ctrl_c_acts_in_a_step_with_very_many_collisions(tmp_path):
     start, state = given_start(two, [-27, -24], [0, -1]), tmp_path / "state"
     how = {"every": 1, "time_step": 1, "start": start, "observe": "collisions", "progress": False}
     simulate(two.replace(mass_ratio=1), duration=20, **how)  # compiles
-    threading.Timer(1, signal.raise_signal, [signal.SIGINT]).start()
+    threading.Timer(0.5, signal.raise_signal, [signal.SIGINT]).start()
     with pytest.warns(RuntimeWarning, match="no checkpoint written: a time step takes very many"):
-        run = simulate(two, duration=20, checkpoint=state, checkpoint_interval=0.1, **how)
+        run = simulate(two, duration=20, checkpoint=state, checkpoint_interval=0.03, **how)
     assert run.attrs["status"] == "interrupted"
     assert 0 < run.attrs["end_time"] < 4
     assert read_sealed(state)

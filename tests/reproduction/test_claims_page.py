@@ -64,7 +64,7 @@ def test_figures_their_claims_and_the_page(run, tmp_path, monkeypatch):
     """With short runs of figures 16 and 17, in this process."""
     monkeypatch.setattr(sweeps, "process_pool", lambda *_: nullcontext(AtOnce()))
     for runs in elastic._RUNS.values():
-        monkeypatch.setitem(runs.effort, "quick", (1, {"duration": 5000.0}))
+        monkeypatch.setitem(runs.effort, "quick", (1, {"duration": 2000.0}))
     monkeypatch.chdir(tmp_path)
     status, facts, errors = run("reproduce", "16", "--vector", "svg", "--processes", "1", "--json")
     assert status == 0, errors

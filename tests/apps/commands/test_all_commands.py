@@ -94,7 +94,7 @@ def test_bad_input_is_one_line_exit_two_and_nothing_written(
 
 # What is interrupted, a finished result of before, and what there is afterwards.
 PICTURES = {f"{name}-interrupted.png" for name in ("cloud", "profiles", "spacetime")}
-FOLLOWED = "--size 10 --replicas 100 --duration 40 --every 10"
+FOLLOWED = "--size 10 --replicas 100 --duration 8 --every 2"
 INTERRUPTED = {
     "simulate": ("--size 10 --duration 1e9", "simulation.nc", {"simulation-interrupted.nc"}),
     "compare": ("--size 10 --duration 1e9", "comparison.nc", {"cases"}),  # no chain was done

@@ -51,6 +51,7 @@ def test_a_chain_that_diverges_ends_with_status_1(run, tmp_path):
     assert (result.attrs["status"], chain_of(result).size) == ("diverged", 50)
 
 
+@pytest.mark.usefixtures("sketched")
 @pytest.mark.parametrize("name", THEORIES)
 def test_every_theory_by_its_name(name, run, tmp_path):
     done = run("theory", name, "--size", 4, "--amplitude", 5, "--output", tmp_path)
