@@ -4,6 +4,7 @@ import json
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from functools import wraps
+from queue import Queue
 
 import numpy as np
 import pytest
@@ -150,12 +151,15 @@ def test_nothing_is_submitted_to_a_pool_that_broke(raised, tmp_path):
 
 
 def test_few_of_many_cases_are_submitted_at_a_time_and_ctrl_c_cancels_them(tmp_path, monkeypatch):
-    def interrupted(futures, _):
-        if len(futures) == 50:
-            futures[-1].set_exception(KeyboardInterrupt())
+    class Asked(Queue):
+        def get(self):
+            pool.futures[-1].set_exception(KeyboardInterrupt())
+            return super().get()
 
+    monkeypatch.setattr(running, "SimpleQueue", Asked)
     monkeypatch.setattr(running, "_MOST_UNDER_WAY", 50)
-    pool, many = Scripted(interrupted), Sweep({"amplitude": np.linspace(1, 2, 150)}, "equilibrium")
+    many = Sweep({"amplitude": np.linspace(1, 2, 150)}, "equilibrium")
+    pool = Scripted(lambda *_: None)
     with pytest.raises(KeyboardInterrupt):
         run_cases(many, tmp_path, pool, **QUIET)
     assert [future.cancelled() for future in pool.futures] == 49 * [True] + [False]
@@ -170,7 +174,6 @@ def test_a_wrong_case_at_the_end_of_a_grid_is_found_before_any_work(tmp_path):
 
 def test_runs_that_are_too_short_are_counted(tmp_path):
     short = Sweep({"size": [10, 20], "duration": [20, 1000]})
-    with pytest.warns(
-        cb.particles.ShortRunWarning, match=r"^2 of 4 cases; the first: duration=20 is short"
-    ):
+    told = "^2 of 4 cases; the first: duration=20 is short"
+    with pytest.warns(cb.particles.ShortRunWarning, match=told):
         run_cases(short, tmp_path, **QUIET)

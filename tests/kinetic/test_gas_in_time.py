@@ -116,9 +116,8 @@ def test_the_kinetic_energy_is_that_of_simulated_chains(chain, replicas):
 def test_in_the_steady_state_heat_flows_to_where_collisions_take_it():
     """d(heat flux)/dN is what noise and damping give a rod, less what its collisions take."""
     chain = Chain(size=30, restitution=0.95, amplitude=10)
-    flow = hydrodynamics(
-        chain, force_balance(chain.replace(restitution=1)), 60, every=60, **EVOLVING
-    )
+    start = force_balance(chain.replace(restitution=1))
+    flow = hydrodynamics(chain, start, 60, every=60, **EVOLVING)
     end, W, m = flow.isel(time=-1), chain.free_velocity_width, chain.mass
     assert end.residual < 1e-3
     N, T, rho = end.label.values, end.velocity_variance.values, end.density.values

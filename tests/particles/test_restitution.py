@@ -71,9 +71,8 @@ def test_a_chain_that_diverges_keeps_what_was_measured(name):
 @pytest.mark.compiled
 def test_a_chain_that_explodes_at_once_has_a_status_and_no_averages():
     """150 flippers released in contact amplify their first kick without end."""
-    with pytest.raises(
-        DivergedError, match=r"before the first snapshot at t = .*warmup=0"
-    ) as caught:
+    told = r"before the first snapshot at t = .*warmup=0"
+    with pytest.raises(DivergedError, match=told) as caught:
         simulate(FLIPPERS, duration=100, progress=False)
     run = caught.value.result
     assert run.attrs["status"] == "diverged"
