@@ -109,7 +109,7 @@ lessons: $(VENV)/installed-notebooks
 
 # No bars (TQDM_DISABLE) in what is kept. A number that disagrees stops a strict lesson. Copies of the
 # notebooks are executed, and the documentation shows their outputs.
-notebooks: $(VENV)/installed-notebooks
+notebooks: $(VENV)/installed-render
 	mkdir -p build/notebooks
 	rm -f build/notebooks/$(LESSON)*.ipynb
 	cp -R notebooks/$(LESSON)*.ipynb notebooks/teaching.py notebooks/solutions build/notebooks
@@ -121,7 +121,7 @@ build/notebooks/executed: $(wildcard notebooks/*.ipynb notebooks/solutions/*.py)
 	$(MAKE) notebooks
 
 # The committed notebooks show their outputs on the web. A test compares code and outputs.
-render: $(VENV)/installed-notebooks
+render: $(VENV)/installed-render
 	$(BIN)/jupytext --quiet --update --to ipynb notebooks/$(LESSON)*.py
 	$(MAKE) notebooks
 	$(BIN)/python notebooks/outputs.py notebooks/$(LESSON)*.py
