@@ -9,8 +9,7 @@ import pytest
 from gauss_seidel import solve
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 from crazybilliards.particles import stepping
 from crazybilliards.particles.dynamics import make_dynamics
 from crazybilliards.particles.laws.avalanche import make_tally

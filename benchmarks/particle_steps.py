@@ -15,8 +15,7 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 from crazybilliards.model.kernels import kernel
 from crazybilliards.model.parameters import Spring
 from crazybilliards.particles import stepping

@@ -16,8 +16,7 @@ import matplotlib
 matplotlib.use("agg")
 from particle_steps import NOISE, SIZES, WORK
 
-from crazybilliards.comparison.drawing import COLOURS, SYMBOLS
-from crazybilliards.comparison.layout import entitle, house_style, panels
+from crazybilliards.comparison.drawing import COLOURS, SYMBOLS, entitle, house_style, panels
 
 SHORT = "dt = 1e-3"  # in the names of the work
 

@@ -72,8 +72,7 @@ def find_curves(results: Mapping[str, Any], quantity: str, along: str) -> dict[s
     if quantity == "density":
         require_same_smoothing(ours)
     of_all = [n for n, each in ours.items() if "particle" in each[quantity].dims]
-    others = {n: each for n, each in ours.items() if "particle" not in each.dims}
-    of_one = [n for n, each in others.items() if "particle" in each.coords]
+    of_one = [n for n, each in ours.items() if "particle" in {*each.coords} - {*each.dims}]
     if of_all and of_one:
         raise ValueError(f"{quantity}: {of_one[0]} is of one rod, {of_all[0]} of all rods")
     return {label: curves[label] for label in results}

@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.comparison.coverage import require_same_smoothing, smooth
 from crazybilliards.comparison.widths import WidthDeviation, width_deviation
-from crazybilliards.model import chain_of
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, chain_of
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.grid import require_even
 from crazybilliards.model.vocabulary import require

@@ -1,16 +1,26 @@
-"""Drawing results over one another: simulations as symbols, theories as lines."""
+"""Drawing results over one another: simulations as symbols, theories as lines; layout and style.
+
+Pictures have one style, are one or two columns of a journal wide, and their panels have letters.
+``plt.style.use("crazybilliards.comparison.figures")`` gives other pictures the same style. Figures
+that are written to files are made without pyplot, and without the settings of the reader.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import string
+from collections.abc import Iterable, Mapping
+from contextlib import AbstractContextManager
 from itertools import cycle
 from typing import Any, Literal, get_args
 
 import numpy as np
 import xarray as xr
+from matplotlib import rcParams
+from matplotlib import style as styles
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.container import ErrorbarContainer
+from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from crazybilliards.comparison.curves import find_curves, shared_label
@@ -24,6 +34,7 @@ COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#0
 DIRECTIONS = LinearSegmentedColormap.from_list("directions", (COLOURS[0], "#F0F0F0", COLOURS[1]))
 SYMBOLS = "osD^v<"
 _DASHES = ("-", "--", ":", "-.")
+ONE_COLUMN, TWO_COLUMNS = 3.4, 7.0  # widths of journals in inches
 _ALL, _SOME = 60, 30  # symbols of a curve: so many values are all drawn, of more values some
 
 
@@ -171,3 +182,49 @@ def mark_clipped(ax: Axes) -> None:
 def along_the_chain(ax: Axes) -> None:
     """Label the abscissa i_n, the normalized particle number."""
     ax.set(xlabel="normalized particle $i_n$", xticks=(-1, -0.5, 0, 0.5, 1))
+
+
+def house_style() -> AbstractContextManager[None]:
+    """Draw in the style of the package alone, and save there as well: some of it acts only then."""
+    ffmpeg = {"animation.ffmpeg_path": rcParams["animation.ffmpeg_path"]}  # a place, and no look
+    return styles.context(["default", ffmpeg, "crazybilliards.comparison.figures"])
+
+
+def panels(
+    rows: int, columns: int, *, height: float = 2.4, **how: Any
+) -> tuple[Figure, list[Axes]]:
+    """Make a figure with lettered panels, row by row, one column of a journal wide or two.
+
+    ``height`` [inch] is that of a row, and ``how`` as ``Figure.subplots`` takes it.
+    """
+    figure = Figure(figsize=(ONE_COLUMN if columns == 1 else TWO_COLUMNS, height * rows))
+    axes = list(figure.subplots(rows, columns, squeeze=False, **how).ravel())
+    if len(axes) > 1:
+        letter(axes)
+    return figure, axes
+
+
+def letter(axes: Iterable[Axes]) -> None:
+    """Call panels (a), (b), ..."""
+    for name, ax in zip(string.ascii_lowercase, axes, strict=False):
+        ax.set_title(f"({name})", loc="left")
+
+
+def entitle(ax: Axes, text: str) -> None:
+    """Write what a panel shows behind its letter."""
+    ax.set_title(f"{ax.get_title(loc='left')}  {text}".strip(), loc="left")
+
+
+def legend_above(figure: Figure, *axes: Axes, title: str | None = None) -> None:
+    """Put one legend of some panels over all of them, in as many columns as fit."""
+    entries = {
+        label: handle
+        for ax in reversed(axes)  # the first of several with one name is shown
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True)
+    }
+    if not entries:
+        return
+    longest = max(len(label.replace("$", "").replace("\\", "")) for label in entries)
+    columns = max(1, int(figure.get_figwidth() / (0.06 * longest + 0.4)))
+    how: Any = {"loc": "outside upper center", "ncols": min(columns, len(entries)), "title": title}
+    figure.legend(entries.values(), entries.keys(), **how)

@@ -22,13 +22,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crazybilliards.comparison.curves import axis_label, unit_label
-from crazybilliards.comparison.drawing import DIRECTIONS
-from crazybilliards.comparison.layout import TWO_COLUMNS, house_style
+from crazybilliards.comparison.drawing import DIRECTIONS, TWO_COLUMNS, house_style
 from crazybilliards.comparison.side_by_side.relaxation_figures import relaxation_film
-from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import WALLS_AND_MASSES, Array, Chain, chain_of
 from crazybilliards.model.checks import check_path, check_real
-from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import write_atomically
 from crazybilliards.particles import simulate
@@ -38,6 +35,13 @@ _FINER = 4  # snapshots for one picture, of a chain that is simulated
 _FADING = 0.7  # of a flash, from one picture to the next
 _GROUND, _TALL, _LOW = -0.95, 0.5, 0.25  # heights of the anchors and of the two kinds of rods
 _GREY = "#777777"
+# All pictures are in a page, however large it is.
+_PAGE = {"embed_frames": True, "embed_limit": math.inf, "default_mode": "loop"}
+_WRITERS: dict[str, tuple[Callable[..., animation.AbstractMovieWriter], dict[str, Any]]] = {
+    ".mp4": (animation.FFMpegWriter, {"codec": "h264"}),
+    ".gif": (animation.PillowWriter, {}),
+    ".html": (animation.HTMLWriter, _PAGE),
+}
 
 
 class Player:
@@ -103,7 +107,7 @@ def film(
     """
     file = None if path is None else check_path("path", path)
     suffix = ".html" if file is None else file.suffix
-    if suffix not in (".mp4", ".gif", ".html"):
+    if suffix not in _WRITERS:
         raise ValueError(f"path must end in .mp4, .gif or .html, got {file}")
     if suffix == ".mp4" and not has_ffmpeg():
         raise ValueError(
@@ -156,14 +160,8 @@ def _content(
         video = b64encode(_content(figure, show, pictures, ".mp4", a_second)).decode()
         source = f"data:video/mp4;base64,{video}"
         return f'<video controls loop autoplay muted src="{source}"></video>\n'.encode()
-    writer: animation.AbstractMovieWriter
-    if suffix == ".mp4":
-        writer = animation.FFMpegWriter(a_second, codec="h264")
-    elif suffix == ".gif":
-        writer = animation.PillowWriter(a_second)
-    else:  # all pictures are in it, however large the page is
-        how: Any = {"embed_frames": True, "embed_limit": math.inf, "default_mode": "loop"}
-        writer = animation.HTMLWriter(a_second, **how)
+    kind, how = _WRITERS[suffix]
+    writer = kind(a_second, **how)
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch, f"film{suffix}")
         with writer.saving(figure, str(file), None):

@@ -46,5 +46,5 @@ TITLES = {
 
 def theory_of(chain: Chain) -> StationaryTheory:
     """Return the exact equilibrium if no collision of the chain takes energy, otherwise the gas."""
-    elastic = chain.restitution == 1 and chain.wall_restitution == 1
+    elastic = chain.restitution == chain.wall_restitution == 1
     return THEORIES["equilibrium" if elastic else "steady_state"]

@@ -5,9 +5,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from crazybilliards.model import Chain, chain_of
+from crazybilliards.model import WALLS_AND_MASSES, Chain, chain_of
 from crazybilliards.model.arrays import middle_tenth
-from crazybilliards.model.parameters import WALLS_AND_MASSES
 
 _LEAST_INNER = 7  # rods from which on the two at each border are left out of the largest deviation
 
@@ -30,8 +29,7 @@ class WidthDeviation(NamedTuple):
 
 def central_width(run: xr.Dataset, of: str = "velocity_width") -> float:
     """W_v in the centre, or W_x: root mean square over the middle tenth of the rods."""
-    middle = middle_tenth(run.sizes["particle"])
-    return float(np.sqrt((run[of].values[middle] ** 2).mean()))
+    return float(np.sqrt((run[of].values[middle_tenth(run.sizes["particle"])] ** 2).mean()))
 
 
 def border_width(run: xr.Dataset) -> float:

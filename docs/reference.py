@@ -6,7 +6,7 @@ A new public name appears by itself, below the docstring of the module that it c
 import re
 from dataclasses import is_dataclass
 from importlib import import_module
-from inspect import getsourcelines, ismodule, unwrap
+from inspect import getsourcelines, isclass, isfunction, unwrap
 from typing import Any
 
 from sphinx.util import logging
@@ -51,9 +51,10 @@ def fill_page(app, page, source) -> None:
 
 
 def _public(room: str) -> list[str]:
-    """Return the names of a room, without observers and sweeps, which have pages of their own."""
+    """Return functions and classes of a room; observers and sweeps have pages of their own."""
     module = import_module(room)
-    names = [name for name in module.__all__ if not ismodule(getattr(module, name))]
+    things = {name: getattr(module, name) for name in module.__all__}
+    names = [name for name, thing in things.items() if isclass(thing) or isfunction(thing)]
     if room != "crazybilliards.comparison":
         return names
     return [name for name in names if name not in import_module(f"{room}.sweeps").__all__]

@@ -7,6 +7,6 @@ from .exact.gibbs_measure import (
 from .fluids.equations import hydrodynamics as hydrodynamics
 from .gas.criticality import critical_size as critical_size
 from .gas.stationary import steady_state as steady_state
-from .rods.fluids import rod_by_rod as rod_by_rod
+from .rods import rod_by_rod as rod_by_rod
 from .starts import compressed as compressed, displaced as displaced
 from .statics.balance import force_balance as force_balance

@@ -4,10 +4,8 @@ from collections.abc import Collection
 
 import numpy as np
 
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
-from crazybilliards.model.checks import check_real
-from crazybilliards.model.words import check_chain
+from crazybilliards.model import Array, Chain
+from crazybilliards.model.checks import check_chain, check_real
 
 _OUTPUTS, _MOST_OUTPUTS = 100, 1_000_000
 

@@ -15,11 +15,9 @@ from scipy.optimize import elementwise
 from crazybilliards.kinetic.exact.points import fields_of_points
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import fluid_reach, stationary
-from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import WALLS_AND_MASSES, Array, Chain, chain_of
 from crazybilliards.model.checks import check_real, refuse_units, shown
 from crazybilliards.model.grid import position_grid, thermal_reach
-from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, refuse_unread, require, result
 from crazybilliards.model.warn import warn_user
 

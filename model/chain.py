@@ -208,9 +208,7 @@ class Chain(Parameters):
         """Temperature T = m W^2 = A^2 / (2 gamma) [M R^2/t_0^2]; inf without damping."""
         if self.amplitude == 0:
             return 0.0
-        if self.damping == 0:
-            return math.inf
-        return self.amplitude**2 / (2 * self.damping)
+        return math.inf if self.damping == 0 else self.amplitude**2 / (2 * self.damping)
 
     @property
     def free_velocity_width(self) -> float:

@@ -1,7 +1,5 @@
 """Checks of arguments: each returns the value, or raises one ValueError that gives the reason."""
 
-from __future__ import annotations
-
 import math
 import os
 import re
@@ -134,3 +132,29 @@ def check_path(name: str, path: object) -> Path:
         return Path(path).expanduser()
     except RuntimeError as error:
         raise ValueError(f"{name}: there is no home folder for {shown(str(path))}") from error
+
+
+def check_chain(chain: object) -> None:
+    """Raise a TypeError unless this is a Chain: results are easily taken for their chain."""
+    if not hasattr(chain, "require_known"):
+        raise TypeError(
+            f"chain must be a Chain, got a {type(chain).__name__}: Chain(size=60) makes one, "
+            "chain_of(result) returns that of a result"
+        )
+
+
+def require_memory(wanted: str, needed: float) -> None:
+    """Raise a ValueError with both numbers unless ``needed`` bytes are available.
+
+    Linux grants more memory than there is, and kills the process when the memory is used. So this
+    comes before any of it is allocated. ``wanted`` says what the memory is for, and begins with the
+    name of the argument to change.
+    """
+    import psutil  # here, because most commands allocate little and start sooner without it
+
+    available = psutil.virtual_memory().available
+    if needed > available:
+        raise ValueError(
+            f"{wanted} would take {needed / 2**30:.3g} GiB of memory, "
+            f"{available / 2**30:.3g} GiB are available"
+        )

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model.chain import Chain
+from crazybilliards.model.checks import require_memory
 from crazybilliards.model.kernels import kernel
-from crazybilliards.model.memory import require_memory
 
 _BINS_PER_ROD = 21  # "bins much smaller than R": h = 0.095 R
 _MOST_NODES = 2**18

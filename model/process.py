@@ -57,8 +57,7 @@ def terminated_like_interrupted() -> Iterator[list[int]]:
     They do so only where their action is the default: nohup, for example, ignores SIGHUP.
     """
     signals = _Interrupt()
-    default = [n for n in _ENDING if signal.getsignal(n) is signal.SIG_DFL]
-    with _handled(default, signals):
+    with _handled([n for n in _ENDING if signal.getsignal(n) is signal.SIG_DFL], signals):
         yield signals
 
 

@@ -22,9 +22,8 @@ import h5py
 import numpy as np
 import xarray as xr
 
-from crazybilliards.model.checks import check_path, shown
+from crazybilliards.model.checks import check_path, require_memory, shown
 from crazybilliards.model.locks import hidden_beside
-from crazybilliards.model.memory import require_memory
 from crazybilliards.model.warn import warn_if_diverged
 
 _CLASSIC, _NETCDF_4 = b"CDF", b"\x89HDF"  # the first bytes of a file

@@ -59,12 +59,3 @@ def with_hints(function: Callable[Arguments, Result]) -> Callable[Arguments, Res
         return function(*positional, **named)
 
     return checked
-
-
-def check_chain(chain: object) -> None:
-    """Raise a TypeError unless this is a Chain: results are easily taken for their chain."""
-    if not hasattr(chain, "require_known"):
-        raise TypeError(
-            f"chain must be a Chain, got a {type(chain).__name__}: Chain(size=60) makes one, "
-            "chain_of(result) returns that of a result"
-        )

@@ -4,10 +4,8 @@ import math
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crazybilliards.model import Chain
-from crazybilliards.model.parameters import WALLS_AND_MASSES
+from crazybilliards.model import WALLS_AND_MASSES, Array, Chain
 from crazybilliards.particles.laws import law as laws
 from crazybilliards.particles.laws.closed_contacts import CLOSED_KICK, CRITICAL_RESTITUTION
 from crazybilliards.particles.laws.exact_flight import Propagator, make_propagator
@@ -44,13 +42,13 @@ class Step(NamedTuple):
 class Dynamics(NamedTuple):
     """Everything that the kernels need of a run; it is the same for all replicas."""
 
-    anchors: NDArray[np.float64]  # reduced, (L,)
+    anchors: Array  # reduced, (L,)
     step: Step
     second: Step  # of the rods 2, 4, ..., whose mass may be another one
     law: laws.Law
     propagator: Propagator  # of a step, if the law is EXACT
     fastest: float  # with a faster rod the chain has diverged
-    inverse: NDArray[np.float64]  # inverse masses for ``make_scratch``
+    inverse: Array  # 1/m of the rods, and of the walls around them; see ``Scratch``
 
 
 def make_dynamics(
@@ -79,7 +77,10 @@ def make_dynamics(
     law = laws.make_law(chain, time_step, operator, merging, speed, halves=halves)
     speed *= math.sqrt(max(chain.mass_ratio, 1 / chain.mass_ratio))  # a heavy rod hits a light one
     fastest = _DIVERGED * speed if speed > 0 else math.inf
-    propagator, inverse = make_propagator(chain, time_step), laws.inverse_masses(chain)
+    propagator, inverse = make_propagator(chain, time_step), np.zeros(0)
+    if chain.box or chain.mass_ratio != 1:
+        rods = chain.mass / chain.rod_masses
+        inverse = np.array([0.0, *rods, 0.0]) if chain.box else rods
     return Dynamics(chain.reduced_anchors, one, other, law, propagator, fastest, inverse)
 
 

@@ -3,8 +3,6 @@
 It is made once, before any work, and counts the run in whole steps, snapshots and blocks.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -14,12 +12,17 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
-from crazybilliards.model.checks import check_choice, check_integer, check_real, is_list, shown
+from crazybilliards.model import Array, Chain
+from crazybilliards.model.checks import (
+    check_chain,
+    check_choice,
+    check_integer,
+    check_real,
+    is_list,
+    require_memory,
+    shown,
+)
 from crazybilliards.model.grid import require_resolved
-from crazybilliards.model.memory import require_memory
-from crazybilliards.model.words import check_chain
 from crazybilliards.particles import dynamics, scales
 from crazybilliards.particles.dynamics import Dynamics, Stepper, default_merging, make_dynamics
 from crazybilliards.particles.laws.law import EXACT, Method, choose_operator
@@ -74,7 +77,13 @@ class Run:
         for name, kinds in (("method", Method), ("stepper", Stepper), ("average", Average)):
             check_choice(name, getattr(self, name), get_args(kinds))
         check_chain(self.chain)
-        self._require_known()
+        if not self.exact:  # which refuses by itself what it does not know, as the start does
+            self.chain.require_known("simulate (springs, damping and noise)", dynamics.knows)
+        self.chain.require_known("simulate (its time scales)", scales.knows)
+        for observer in self.observers:
+            if observer.reads_chain:
+                by = f"observe: {observer.name!r} (by knows and reads_chain of its class)"
+                self.chain.require_known(by, observer.knows)
         merging = default_merging(self.chain) if self.merging is None else self.merging
         self.merging = check_real("merging", merging)
         self.seed = check_integer("seed", self.seed, least=0)
@@ -88,16 +97,6 @@ class Run:
         names = ", ".join(observer.name for observer in self.observers)
         few = "ask for less, such as 'widths' alone, or fewer particles, replicas or times"
         require_memory(f"observe ({few}): {names}", rest + _COPIES * sums)
-
-    def _require_known(self) -> None:
-        """Raise a ValueError if anything that reads the chain does not know a parameter of it."""
-        if not self.exact:  # which refuses by itself, as the start does
-            self.chain.require_known("simulate (springs, damping and noise)", dynamics.knows)
-        self.chain.require_known("simulate (its time scales)", scales.knows)
-        for observer in self.observers:
-            if observer.reads_chain:
-                by = f"observe: {observer.name!r} (by knows and reads_chain of its class)"
-                self.chain.require_known(by, observer.knows)
 
     def _count_steps(self) -> None:
         """Check the times, choose those that are not given, and count steps and snapshots."""

@@ -16,10 +16,8 @@ import math
 
 import numpy as np
 
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
-from crazybilliards.model.parameters import WALLS_AND_MASSES
-from crazybilliards.model.words import check_chain
+from crazybilliards.model import WALLS_AND_MASSES, Array, Chain
+from crazybilliards.model.checks import check_chain
 
 # Parameters beside ``KNOWN`` with which these scales are right. A run refuses others.
 knows: frozenset[str] = WALLS_AND_MASSES
@@ -83,9 +81,8 @@ def default_time_step(chain: Chain) -> float:
     elastic = chain.restitution == chain.wall_restitution == 1
     if elastic or chain.amplitude == 0 or chain.damping == 0:
         return step
-    # A sqrt(dt)/m = ratio * W, W = A/sqrt(2 m gamma)
-    ratio = _KICK * centre_width(chain)
-    return min(step, ratio**2 * lightest / (2 * chain.damping))
+    # A sqrt(dt)/m = 0.3 W_v, W = A/sqrt(2 m gamma)
+    return min(step, (_KICK * centre_width(chain)) ** 2 * lightest / (2 * chain.damping))
 
 
 def relaxation_time(chain: Chain) -> float:

@@ -10,14 +10,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array, check_numbers
-from crazybilliards.model.checks import check_integer, shown
-from crazybilliards.model.memory import require_memory
-from crazybilliards.model.parameters import WALLS_AND_MASSES
+from crazybilliards.model import WALLS_AND_MASSES, Array, Chain
+from crazybilliards.model.arrays import check_numbers
+from crazybilliards.model.checks import check_chain, check_integer, require_memory, shown
 from crazybilliards.model.vocabulary import refuse_unread, require, result
 from crazybilliards.model.warn import warn_user
-from crazybilliards.model.words import check_chain
 
 # Parameters beside ``KNOWN`` with which a start is right: at the anchors, or where rods are put.
 knows: frozenset[str] = WALLS_AND_MASSES

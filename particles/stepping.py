@@ -24,8 +24,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from crazybilliards.model import Chain, spring
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain, spring
 from crazybilliards.model.grid import deposit
 from crazybilliards.model.kernels import copy, inlined, kernel
 from crazybilliards.particles.dynamics import Dynamics, make_dynamics

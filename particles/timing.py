@@ -37,8 +37,7 @@ _BLOCK = 4.0
 _ENOUGH = 5.0
 # A short time between snapshots shortens the step. Only in a short run may it become so much
 # shorter than the chain needs.
-_MOST_SHORTENED = 1000
-_MOST_SHORT_STEPS = 1_000_000
+_MOST_SHORTENED, _MOST_SHORT_STEPS = 1000, 1_000_000
 
 
 def default_warmup(chain: Chain) -> float:

@@ -8,8 +8,7 @@ from matplotlib.axes import Axes
 
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.drawing import COLOURS, draw_points
-from crazybilliards.model import chain_of
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, chain_of
 from crazybilliards.reproduction.claims.study import error_of_mean
 
 _SYMBOLS_DRAWN = 41

@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 from scipy.stats import linregress
 
-from crazybilliards.comparison.fits.fit import Fit, check_points, least_squares, root_mean_square
-from crazybilliards.model.arrays import Array
+from crazybilliards.comparison.fits import Fit, check_points, least_squares, root_mean_square
+from crazybilliards.model import Array
 from crazybilliards.model.checks import check_integer, check_real
 
 

@@ -9,8 +9,7 @@ import xarray as xr
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.fits import fit_border_power_law
 from crazybilliards.comparison.widths import border_width, central_width
-from crazybilliards.model import chain_of
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, chain_of
 from crazybilliards.reproduction.claims.verdicts import EYE, Estimate, furthest_in_plot, in_plot
 
 

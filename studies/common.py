@@ -13,7 +13,7 @@ import matplotlib as mpl
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.layout import house_style
+from crazybilliards.comparison.drawing import house_style
 from crazybilliards.comparison.sweeps import Case, process_pool, run_cases
 from crazybilliards.model import Chain
 

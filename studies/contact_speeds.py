@@ -2,7 +2,7 @@ r"""How fast neighbours are when they meet: K(e) of the theory with pair correla
 
     python -m studies.contact_speeds [--restitution E ...]
 
-Prints K^2 beside the table of kinetic/gas/contact_speeds.py, which explains it. Two
+Prints K^2 beside the table of kinetic/gas/closure.py, which explains it. Two
 neighbours have the distance r > 0 and the relative velocity w,
 
     r' = w,      w' = -a w - 1 + sqrt(2) noise,      w -> -e w where r = 0,
@@ -28,7 +28,7 @@ from scipy import sparse
 from scipy.optimize import root_scalar
 from scipy.sparse.linalg import spsolve
 
-from crazybilliards.kinetic.gas.contact_speeds import SQUARES
+from crazybilliards.kinetic.gas.closure import SQUARES
 from studies.common import options
 
 DAMPING = np.sqrt(2 / np.pi)  # a sqrt(<w^2>)

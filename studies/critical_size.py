@@ -14,8 +14,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, draw_points
-from crazybilliards.comparison.layout import panels
+from crazybilliards.comparison.drawing import COLOURS, draw_points, panels
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.kinetic import critical_size
 from crazybilliards.model import Chain, chain_of

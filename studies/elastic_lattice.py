@@ -2,7 +2,7 @@ r"""How far does a rod move in a uniform elastic lattice of wells? The table of 
 
     python -m studies.elastic_lattice
 
-Prints ``VARIANCES`` of kinetic/gas/elastic_contacts.py. The rods of an infinite chain at e = 1 have
+Prints ``VARIANCES`` of kinetic/gas/descriptions.py. The rods of an infinite chain at e = 1 have
 wells at the spacing x, in units of sqrt(T/k). In the reduced coordinate they are points that keep
 their order. Their displacements u_i have the Gibbs measure
 
@@ -23,7 +23,7 @@ import math
 
 import numpy as np
 
-from crazybilliards.kinetic.gas.elastic_contacts import VARIANCES
+from crazybilliards.kinetic.gas.descriptions import VARIANCES
 from studies.common import Table, print_table
 
 FARTHEST = 6.0  # displacement

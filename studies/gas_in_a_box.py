@@ -19,11 +19,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, draw_points
-from crazybilliards.comparison.layout import entitle, legend_above, panels
+from crazybilliards.comparison.drawing import COLOURS, draw_points, entitle, legend_above, panels
 from crazybilliards.kinetic import equilibrium_states, hydrodynamics
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 from crazybilliards.particles import simulate
 from studies.common import Table, options, print_table, save_picture
 

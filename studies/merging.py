@@ -15,8 +15,7 @@ import time
 
 import numpy as np
 
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 from crazybilliards.model.kernels import kernel
 from crazybilliards.particles.dynamics import Dynamics, make_dynamics
 from crazybilliards.particles.laws.avalanche import Tally, make_tally

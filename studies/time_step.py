@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array, middle_tenth
+from crazybilliards.model import Array, Chain
+from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.model.kernels import inlined, kernel
 from crazybilliards.particles.dynamics import Dynamics, make_dynamics
 from crazybilliards.particles.laws import law as laws

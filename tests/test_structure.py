@@ -43,7 +43,7 @@ FLOORS = {
         {"fluids"},
     ),
     "comparison": (
-        {"combining", "coverage", "curves", "distances", "drawing", "fits", "layout", "widths"}
+        {"combining", "coverage", "curves", "distances", "drawing", "fits", "widths"}
         | {"stationary_theories"},
         {"sweeps"},
         {"side_by_side"},

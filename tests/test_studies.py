@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from crazybilliards.kinetic.gas.elastic_contacts import VARIANCES
+from crazybilliards.kinetic.gas.descriptions import VARIANCES
 from crazybilliards.model import Chain
 from studies import critical_size, elastic_lattice, neighbours
 

@@ -9,8 +9,14 @@ from typing import TYPE_CHECKING, Any, Literal
 from typer import Argument, Option
 
 from crazybilliards.apps.commands.options import Json, Output, Seed, Threads, chain_options, numbers
-from crazybilliards.apps.commands.output import conclude, picture, writing_to
-from crazybilliards.apps.commands.tables import measured_table, rods_table, table
+from crazybilliards.apps.commands.output import (
+    conclude,
+    measured_table,
+    picture,
+    rods_table,
+    table,
+    writing_to,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -72,10 +78,17 @@ def simulate(
     """
     from crazybilliards.particles import simulate as run_simulation
 
-    settings: dict[str, Any] = {"duration": duration, "warmup": warmup, "time_step": time_step}
-    settings |= {"every": every, "average": average, "replicas": replicas, "method": method}
-    settings |= {"observe": [name.strip() for name in observe.split(",")]}
-    settings |= {"particles": None if particles is None else numbers("particles", particles, int)}
+    settings: dict[str, Any] = {
+        "duration": duration,
+        "warmup": warmup,
+        "time_step": time_step,
+        "every": every,
+        "average": average,
+        "replicas": replicas,
+        "method": method,
+        "observe": [name.strip() for name in observe.split(",")],
+        "particles": None if particles is None else numbers("particles", particles, int),
+    }
     with writing_to(output, "simulation.nc"):
         run = run_simulation(chain, seed=seed, threads=threads, checkpoint=checkpoint, **settings)
         conclude(run, output, "simulation.nc", {}, as_json, run.to_dict(), *_run_text(run))
@@ -129,8 +142,7 @@ def theory(
             "profile.png": picture(figures.draw_profile, result, solver.title),
         }
         title = f"{solver.title.capitalize()}, L = {chain.size}, e = {chain.restitution:g}"
-        columns = _ERRORS | _OF_WALLS if chain.box else _ERRORS
-        errors = table(columns, [result.attrs], _OF_ERRORS)
+        errors = table(_ERRORS | _OF_WALLS if chain.box else _ERRORS, [result.attrs], _OF_ERRORS)
         residual = f"residual: {result.attrs['residual']:.1e}"
         text: list[str | Table] = [title, rods_table(result), residual, errors]
         facts = {"theory": solver.name} | result.to_dict()

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from typer import Option
 
 from crazybilliards.apps.commands.options import Json, Output, Seed, Threads, chain_options, numbers
-from crazybilliards.apps.commands.output import conclude, picture, writing_to
-from crazybilliards.apps.commands.tables import table
+from crazybilliards.apps.commands.output import conclude, picture, table, writing_to
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -79,8 +78,13 @@ def compare(
     several = [name for name, listed in values.items() if len(listed) > 1]
     [over] = several or ["amplitude" if restitution is None else "restitution"]
     chain = chain.replace(**{name: listed[0] for name, listed in values.items()})
-    how: dict[str, Any] = {"duration": duration, "seed": seed}
-    how |= {"processes": processes, "threads": threads, "folder": output and output / "cases"}
+    how: dict[str, Any] = {
+        "duration": duration,
+        "seed": seed,
+        "processes": processes,
+        "threads": threads,
+        "folder": output and output / "cases",
+    }
     with writing_to(output, "comparison.nc"):
         tree = grid.compare(chain, {over: values[over]}, **how)
         rows = _deviations(over, tree)
@@ -156,8 +160,15 @@ def relax(
         raise ValueError("film needs --output FOLDER, into which it is written")
     if by is None:
         by = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}.get(release, 0.5)
-    how: dict[str, Any] = {"release": release, "by": by, "duration": duration, "every": every}
-    how |= {"replicas": replicas, "seed": seed, "threads": threads}
+    how: dict[str, Any] = {
+        "release": release,
+        "by": by,
+        "duration": duration,
+        "every": every,
+        "replicas": replicas,
+        "seed": seed,
+        "threads": threads,
+    }
     with writing_to(output, "relaxation.nc"):
         tree = relaxation.condensed(relaxation.compare_relaxation(chain, **how))
         pictures: dict[str, Any] = {

@@ -17,14 +17,12 @@ from crazybilliards.comparison.sweeps import Case, process_pool, run_cases
 from crazybilliards.comparison.sweeps.grid import grid_values
 from crazybilliards.kinetic import equilibrium, force_balance, rod_by_rod
 from crazybilliards.kinetic.requirements import require_chain
-from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.checks import check_integer, check_path, shown
+from crazybilliards.model import WALLS_AND_MASSES, Chain, chain_of
+from crazybilliards.model.checks import check_chain, check_integer, check_path, shown
 from crazybilliards.model.kernels import announced
-from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.vocabulary import require
 from crazybilliards.model.warn import warn_user
-from crazybilliards.model.words import check_chain
 from crazybilliards.particles.simulation import make_run
 from crazybilliards.particles.stepping import compile_kernels
 

@@ -13,13 +13,16 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.curves import axis_label
-from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, overlay
-from crazybilliards.comparison.layout import (
+from crazybilliards.comparison.drawing import (
+    COLOURS,
     ONE_COLUMN,
     TWO_COLUMNS,
+    along_the_chain,
+    draw_rods,
     entitle,
     legend_above,
     letter,
+    overlay,
     panels,
 )
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, GAS, SIMULATION

@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.curves import axis_label, unit_label
-from crazybilliards.comparison.drawing import overlay
-from crazybilliards.comparison.layout import TWO_COLUMNS, entitle, legend_above, panels
+from crazybilliards.comparison.drawing import TWO_COLUMNS, entitle, legend_above, overlay, panels
 from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, cloud
 from crazybilliards.comparison.widths import displacement_unit
@@ -108,8 +107,7 @@ def relaxation_film(tree: xr.DataTree, most: int) -> tuple[Figure, Callable[[int
     lines = {str(line.get_label()): line for line in ax.lines}
 
     def show(picture: int) -> None:
-        time = float(rods.time[picture])
-        ax.set_title(f"{title}: $t = {time:.2f}$ {unit_label(rods.time)}")
+        ax.set_title(f"{title}: $t = {float(rods.time[picture]):.2f}$ {unit_label(rods.time)}")
         for name, each in densities.items():
             lines[name].set_ydata(each.density.values[picture])
 

@@ -2,7 +2,6 @@
 
 from crazybilliards.comparison.sweeps.case import Case
 from crazybilliards.comparison.sweeps.grid import Sweep, load_sweep, read_sweep
-from crazybilliards.comparison.sweeps.processes import process_pool
-from crazybilliards.comparison.sweeps.running import run_cases
+from crazybilliards.comparison.sweeps.running import process_pool, run_cases
 
 __all__ = ["Case", "Sweep", "load_sweep", "process_pool", "read_sweep", "run_cases"]

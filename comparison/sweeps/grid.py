@@ -129,8 +129,7 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
         If a file is damaged, if there are no files, if they are not cases of one job, if two files
         hold the same case, or if runs with different observers do not fit together.
     """
-    place = check_path("folder", folder)
-    paths = sorted(place.glob("[!.]*.nc"))  # hidden files are no results
+    paths = sorted(check_path("folder", folder).glob("[!.]*.nc"))  # hidden files are no results
     if not paths:
         raise ValueError(f"{folder}: holds no case of a sweep")
     results = []

@@ -13,8 +13,16 @@ from small_files import save
 
 import crazybilliards as cb
 from crazybilliards.comparison.curves import axis_label
-from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
-from crazybilliards.comparison.layout import TWO_COLUMNS, entitle, house_style, legend_above, panels
+from crazybilliards.comparison.drawing import (
+    COLOURS,
+    TWO_COLUMNS,
+    along_the_chain,
+    draw_rods,
+    entitle,
+    house_style,
+    legend_above,
+    panels,
+)
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND
 from crazybilliards.comparison.stationary_theories import TITLES
 

@@ -8,8 +8,7 @@ from small_files import save
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.distances import deviation
-from crazybilliards.comparison.drawing import overlay
-from crazybilliards.comparison.layout import entitle, house_style, legend_above, panels
+from crazybilliards.comparison.drawing import entitle, house_style, legend_above, overlay, panels
 from crazybilliards.kinetic import force_balance
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate

@@ -8,8 +8,13 @@ from pathlib import Path
 import pandas as pd
 from small_files import save
 
-from crazybilliards.comparison.drawing import COLOURS, draw_points
-from crazybilliards.comparison.layout import house_style, legend_above, panels
+from crazybilliards.comparison.drawing import (
+    COLOURS,
+    draw_points,
+    house_style,
+    legend_above,
+    panels,
+)
 
 TABLE = Path(__file__).parents[1] / "tables/correlation_lengths.csv"
 

@@ -9,8 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.optimize import isotonic_regression
 
-from crazybilliards.comparison.drawing import COLOURS
-from crazybilliards.comparison.layout import entitle, house_style, panels
+from crazybilliards.comparison.drawing import COLOURS, entitle, house_style, panels
 from crazybilliards.kinetic import breathing_cloud
 from crazybilliards.model import Chain
 

@@ -1,1 +1,1 @@
-"""Exact solutions at e = 1: the Gibbs measure, and the breathing cloud."""
+"""Exact solutions at e = 1: the Gibbs measure, the rods' places, the breathing cloud."""

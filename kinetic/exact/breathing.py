@@ -20,10 +20,8 @@ from scipy.integrate import solve_ivp
 
 from crazybilliards.kinetic.exact.gibbs_measure import equilibrium
 from crazybilliards.kinetic.requirements import output_times, require_chain
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
-from crazybilliards.model.checks import check_real
-from crazybilliards.model.memory import require_memory
+from crazybilliards.model import Array, Chain
+from crazybilliards.model.checks import check_real, require_memory
 from crazybilliards.model.vocabulary import result
 
 

@@ -30,15 +30,12 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 
 from crazybilliards.kinetic.accuracy import expected
-from crazybilliards.kinetic.exact.recursion import Recursion, recursion_of
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
-from crazybilliards.model.checks import check_integer
+from crazybilliards.kinetic.exact.recursion import recursion_of
+from crazybilliards.model import Array, Chain
+from crazybilliards.model.checks import check_chain, check_integer, require_memory
 from crazybilliards.model.grid import position_grid
-from crazybilliards.model.memory import require_memory
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.vocabulary import OF_RODS, result
-from crazybilliards.model.words import check_chain
 
 _MOST_STATES = 10**15  # more than any memory holds, and still exact as a float
 
@@ -69,11 +66,7 @@ def equilibrium(chain: Chain) -> xr.Dataset:
     array([-0.56419,  0.56419])
     """
     check_chain(chain)
-    return _in_vocabulary(chain, recursion_of(chain))
-
-
-def _in_vocabulary(chain: Chain, recursion: Recursion) -> xr.Dataset:
-    x = position_grid(chain)
+    recursion, x = recursion_of(chain), position_grid(chain)
     density, label = np.zeros((2, x.size))
     mean, width, log_z = np.zeros((3, chain.size))
     for i in range(chain.size):
@@ -82,7 +75,7 @@ def _in_vocabulary(chain: Chain, recursion: Recursion) -> xr.Dataset:
         width[i] = np.sqrt((d - mean[i]) ** 2 @ share)
         _add_rod(x, chain.anchors[i] + d, p, density, label)
     force = np.full(2, chain.temperature * recursion.distribution(0)[1][0])
-    dataset = result(
+    return result(
         chain,
         {
             **({"wall_force": ("wall", force)} if chain.box else {}),
@@ -96,9 +89,7 @@ def _in_vocabulary(chain: Chain, recursion: Recursion) -> xr.Dataset:
         source="theory",
         method={"theory": "exact equilibrium"},
         residual=float(np.ptp(log_z)),
-    )
-    dataset.attrs |= expected("equilibrium", chain).named()
-    return dataset.assign_attrs(density_of=OF_RODS)
+    ).assign_attrs(expected("equilibrium", chain).named(), density_of=OF_RODS)
 
 
 def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Dataset:

@@ -18,8 +18,7 @@ import xarray as xr
 from scipy.fft import dct, idct
 
 from crazybilliards.kinetic.requirements import output_times
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import OF_FLUID, result
 

@@ -14,11 +14,9 @@ from numpy.typing import NDArray
 from scipy.special import gammaln
 
 from crazybilliards.kinetic.requirements import require_chain
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import WALLS_AND_MASSES, Array, Chain
+from crazybilliards.model.checks import require_memory
 from crazybilliards.model.grid import require_resolved, thermal_reach
-from crazybilliards.model.memory import require_memory
-from crazybilliards.model.parameters import WALLS_AND_MASSES
 
 # Grid nodes in the width of the narrowest rod, which is the middle one without a gap.
 _NODES_PER_WIDTH = 10
@@ -118,21 +116,16 @@ def recursion_of(chain: Chain) -> Recursion:
     log_f = np.empty((rods, 2 * half + 1))
     recursion = Recursion(chain, spacing, middles.astype(np.int64) - half, log_f)
     for i in range(rods):
-        log_f[i] = _log_cumulative(recursion.log_weight(i) + recursion.log_below(i), i)
+        phi = recursion.log_weight(i) + recursion.log_below(i)
+        from_zero = phi[0] == -np.inf
+        cells = _log_cells(np.append(phi[1] if from_zero else phi[0], phi[1:]))
+        if from_zero:  # exp(phi) begins as t^i
+            t = np.arange(1.0, phi.size)
+            exact = (i + 1) * np.log(t) + np.log1p(-((1 - 1 / t) ** (i + 1)))
+            cells[1:] += exact[1:] - np.log(i + 1) - _log_cells(i * np.log(np.append(1.0, t)))[1:]
+            cells[0] = phi[1] - np.log(i + 1)
+        log_f[i] = np.logaddexp.accumulate(np.append(-np.inf, cells))
     return recursion
-
-
-def _log_cumulative(phi: Array, number: int) -> Array:
-    """Logarithm of the integral of f = exp(phi) from t = 0, where f may begin as t^number, on."""
-    from_zero = phi[0] == -np.inf
-    cells = _log_cells(np.append(phi[1] if from_zero else phi[0], phi[1:]))
-    if from_zero:
-        t = np.arange(1.0, phi.size)
-        exact = (number + 1) * np.log(t) + np.log1p(-((1 - 1 / t) ** (number + 1)))
-        power = _log_cells(number * np.log(np.append(1.0, t)))
-        cells[1:] += exact[1:] - np.log(number + 1) - power[1:]
-        cells[0] = phi[1] - np.log(number + 1)
-    return np.logaddexp.accumulate(np.append(-np.inf, cells))
 
 
 def _log_cells(phi: Array) -> Array:

@@ -67,12 +67,9 @@ from crazybilliards.kinetic.statics.profiles import (
     read_displacement,
     read_velocity_variance,
 )
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
-from crazybilliards.model.checks import check_choice, check_integer, shown
+from crazybilliards.model import WALLS_AND_MASSES, Array, Chain
+from crazybilliards.model.checks import check_choice, check_integer, require_memory, shown
 from crazybilliards.model.grid import position_grid
-from crazybilliards.model.memory import require_memory
-from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.vocabulary import OF_FLUID, require, result
 
 Frame = Literal["label", "eulerian"]

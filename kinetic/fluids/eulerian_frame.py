@@ -28,8 +28,7 @@ from crazybilliards.kinetic.fluids.position_cells import make_faces, starting_fi
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import length_unit
 from crazybilliards.kinetic.statics.profiles import Profile
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 from crazybilliards.model.grid import position_grid, thermal_reach
 
 _COURANT = 0.5
@@ -85,13 +84,11 @@ def make_constants(
     """Return the quantities that the rates depend on, at the cells between ``faces``."""
     s, W, L = length_unit(chain), chain.free_velocity_width, chain.size
     x = (faces[1:] + faces[:-1]) / 2
-    squares = np.full(x.size, W**2) if variance is None else variance.function(x)
-    frozen = np.empty(0) if displacement is None else _frozen(displacement, x)
     return Constants(
         x,
         float(faces[1] - faces[0]),
-        squares,
-        frozen,
+        np.full(x.size, W**2) if variance is None else variance.function(x),
+        np.empty(0) if displacement is None else _frozen(displacement, x),
         size=L,
         rod=2 * chain.radius,
         lattice=2 * chain.radius + chain.lattice_gap,

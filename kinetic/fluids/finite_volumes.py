@@ -13,8 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crazybilliards.model import spring
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, spring
 from crazybilliards.model.kernels import copy, inlined, kernel
 
 _pull = inlined(spring.force)

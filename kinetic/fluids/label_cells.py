@@ -8,8 +8,7 @@ from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.fluids.pde_solver import FlowFields
 from crazybilliards.kinetic.statics.label_closure import Stationary
-from crazybilliards.model import Chain, spring
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain, spring
 from crazybilliards.model.grid import position_grid, thermal_reach
 
 _EDGE_CELL = 0.045  # width of a cell at the edge, in thermal lengths
@@ -62,9 +61,7 @@ def mirrored(values: Array, end: float) -> Array:
 
 def _faces(state: Stationary, number: int | None) -> Array:
     """Return the stationary eta of the inner faces: even at the edges, wider in a plateau."""
-    end = state.wall
-    if not state.at_walls:
-        end = float(state.at(np.array([0.5 - _LAST_SHARE]))[0])
+    end = state.wall if state.at_walls else float(state.at(np.array([0.5 - _LAST_SHARE]))[0])
     fine = np.linspace(0, end, 20_001)
     depth = state.lam / 2 - fine
     cells_up_to = cumulative_trapezoid(1 / np.clip(1 + (depth - 6) / 3, 1, 8), fine, initial=0)

@@ -39,8 +39,7 @@ from crazybilliards.kinetic.fluids.pde_solver import FlowFields, solve
 from crazybilliards.kinetic.gas.collision_moments import decay_of_two_masses, moments_of_collisions
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import Stationary, stationary
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 
 _THINNEST = 1e-6  # density of the state at rest at the walls, in L/s
 _EMPTIEST = 5.0  # room of a cell at a wall at the start, in units of that at rest

@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crazybilliards.kinetic.fluids.finite_volumes import minmod
-from crazybilliards.model import spring
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, spring
 from crazybilliards.model.kernels import inlined, kernel
 
 _pull = inlined(spring.force)

@@ -13,7 +13,7 @@ import numpy as np
 from pde import CallbackTracker, CartesianGrid, FieldCollection, MemoryStorage, PDEBase, ScalarField
 from pde.trackers.base import FinishedSimulation
 
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array
 from crazybilliards.model.progress import progress_bar
 
 # py-pde would warn that a short run spent more time on storing than on solving.

@@ -6,8 +6,7 @@ import numpy as np
 
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import length_unit
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 
 # Widths of a cell, by default and at most, over what it has to resolve. With the widest cells the
 # scheme's error is 0.01 to 0.03 of s.

@@ -34,8 +34,7 @@ from crazybilliards.kinetic.exact.points import free_spread
 from crazybilliards.kinetic.fluids.pde_solver import FlowFields
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import stationary
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 from crazybilliards.model.warn import warn_user
 
 _TIMES = 400

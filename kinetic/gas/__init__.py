@@ -20,7 +20,7 @@ v^2 of two neighbours per time, and the third moment decays at the rate r,
 
 where E and c are ``energy`` and ``decay`` of :mod:`.collision_moments`. In time r has one more
 term, n sqrt(T) |T_l|/T, which bounds q where the temperature changes within the free flight of a
-rod. phi = P/(n T) is 1 for points, and less with a gap (:mod:`.elastic_contacts`).
+rod. phi = P/(n T) is 1 for points, and less with a gap (:mod:`.descriptions`).
 
 In the mean field, where colliding rods are independent, a = 1 and h = 0. The fluctuations of
 the same equations give a(l) and h(l), the part of <v^2> that whole neighbourhoods share

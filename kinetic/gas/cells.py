@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ndtr
 
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array
 
 MOST = 200
 _SCORES, _POINTS = 5.5, 320

@@ -14,10 +14,10 @@ it shares no motion of this kind.
 
     Lambda = (1 - e) P <w^2>/<w> = (4/sqrt(pi)) (1 - e) P K F sqrt(Theta),
 
-where Theta = W_v^2 - h_c is the relative temperature of all neighbours and h_c their
-covariance. K(e) of :mod:`.contact_speeds` says how much slower they are when they meet. h_c is the
-mean of two values: with what the last collision of the two left, as half of all neighbours leave
-one another, and without it, continued from pairs of rods further apart.
+where Theta = W_v^2 - h_c is the relative temperature of all neighbours and h_c their covariance.
+K(e), see below, says how much slower they are when they meet. h_c is the mean of two values: with
+what the last collision of the two left, as half of all neighbours leave one another, and without
+it, continued from pairs of rods further apart.
 
 **Clustering.** P goes like Theta/g and Lambda like Theta^(3/2)/g, with g and Theta of the
 neighbourhood, which fluctuate. To second order in the relative deviations their ratio has the mean
@@ -31,20 +31,52 @@ In the equations of the gas that is Lambda = a E n T^(3/2), with P = n T and
     a = 2/(1 + e) K F sqrt(Theta/T),
 
 and 1 - 1/L times it for points at a label, which meet L - 1 others.
+
+**How fast neighbours are when they meet.** If the relative velocities of rods that meet were
+Gaussian, with the variance 2 Theta of all neighbours, then <w^2>/<w> over the collisions of a
+contact would be (4/sqrt(pi)) sqrt(Theta). Inelastic neighbours meet more slowly, because a
+collision takes their relative velocity. The ratio follows from the motion of one pair with the
+distance r > 0 and the relative velocity w,
+
+    r' = w,      w' = -Gamma_e w - 2P + noise,      w -> -e w where r = 0.
+
+Each rod is pressed on its neighbour by the one on its other side, with the mean force P per mass.
+That force falls with the velocity v of the rod: with the velocities u of that neighbour it is
+proportional to <(u - v)^2> over u > v, whose mean derivative is
+
+    dP/dv = -2P/sqrt(pi Theta)      (Gaussians; <dP/dv> = <v P>/<v^2> by Stein's identity).
+
+The pair therefore has the damping Gamma_e = Gamma + 2P/sqrt(pi Theta). With the units of P and the
+noise one number is left beside e,
+
+    Gamma_e sqrt(2 Theta)/(2P) = sqrt(2/pi) + Gamma sqrt(Theta/2)/P,
+
+and inside a chain, where rods collide far more often than they are damped, that is sqrt(2/pi). The
+stationary density of (r, w) then gives
+
+    K(e)^2 = Theta_c/Theta,      sqrt(Theta_c) = (sqrt(pi)/4) <w^2>/<w>.
+
+studies/contact_speeds.py solves for it by finite volumes. K(1) = 1 is exact.
 """
 
+import math
 from typing import NamedTuple, Self
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from crazybilliards.kinetic.gas.cells import at_distance
-from crazybilliards.kinetic.gas.contact_speeds import contact_speed
 from crazybilliards.kinetic.gas.fluctuations import Background, PairCovariance
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array
 
 _NEIGHBOUR = 1.0  # rod
 _BEYOND = 2  # cells between two rods that have not hit one another
 _LEAST = 0.02  # bound of Theta/T, b and 1 - K h_uu on the way; at the end they must be far from it
+
+_RESTITUTIONS = 0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1
+_THOUSANDTHS = 482, 580, 678, 771, 853, 920, 970, 1002, 1011, 1016, 1017, 1015, 1010, 1000
+SQUARES = {e: K / 1000 for e, K in zip(_RESTITUTIONS, _THOUSANDTHS, strict=True)}  # K^2
+_SQUARE = PchipInterpolator(list(SQUARES), list(SQUARES.values()))
 
 
 class Closure(NamedTuple):
@@ -112,3 +144,8 @@ def implied(state: Background, pairs: PairCovariance) -> Closure:
 def _even(values: Array) -> Array:
     """Average over a contact and its mirror image: rounding must not break the symmetry."""
     return (values + values[::-1]) / 2
+
+
+def contact_speed(restitution: float) -> float:
+    """Return K for a restitution from 0 to 1: the root of Theta_c/Theta, to 0.001."""
+    return math.sqrt(float(_SQUARE(restitution)))

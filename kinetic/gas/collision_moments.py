@@ -38,7 +38,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array
 
 _MOST = 1e6
 _NODES = 24  # exact for polynomials up to this degree in w^2 and in v + u; 6 is needed

@@ -23,7 +23,7 @@ from typing import NamedTuple
 from crazybilliards.kinetic.accuracy import warn_if_unmeasured
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
-from crazybilliards.model.words import check_chain
+from crazybilliards.model.checks import check_chain
 
 _STRONGEST = 10.0  # damping
 _SIMULATED = 1.955  # damping, and
@@ -96,5 +96,4 @@ def weak_damping_growth_rate(chain: Chain) -> float:
     grow 10 % more slowly. With a gap they may not run away at all.
     """
     meetings = math.sqrt(chain.stiffness / chain.mass) / math.pi  # of a pair, per time
-    gain = (chain.restitution**2 - 1) / 2 * chain.size * meetings
-    return gain - chain.damping / chain.mass
+    return (chain.restitution**2 - 1) / 2 * chain.size * meetings - chain.damping / chain.mass

@@ -14,18 +14,29 @@ have their forces: at the contact of the rods i and i + 1
     P = E[n T],      g = E[1/n] L/(L + 1),
 
 over Beta(i, L - i) and Beta(i + 1, L - i + 1) of the label, i = 0 and L being walls. At e = 1 they
-are exact. With a gap :mod:`.elastic_contacts` has what springs carry.
+are exact.
+
+**With a gap** contacts carry the share phi = P g/T of the load: rods that stay near their anchors
+seldom meet, and springs carry the rest. In the exact equilibrium at e = 1 mean places and mean
+forces of all rods follow from the Gibbs measure
+(:mod:`crazybilliards.kinetic.exact.gibbs_measure`), the force P between neighbours from the balance
+of each rod, and so phi at every contact and at walls. It is taken at the temperature of the
+outermost rods. Inside the chain the local one changes phi as in the uniform elastic lattice of
+wells, where phi = 1 - v and v(x) is the variance of a rod over T/k at the spacing x = g sqrt(k/T)
+(``studies/elastic_lattice.py``).
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.special import ndtri
 
+from crazybilliards.kinetic.exact.places import at_temperature, beta_scores
+from crazybilliards.kinetic.exact.recursion import recursion_of
 from crazybilliards.kinetic.gas.cells import Cells, cells_of_points, means
 from crazybilliards.kinetic.gas.closure import Closure
-from crazybilliards.kinetic.gas.elastic_contacts import contact_share
 from crazybilliards.kinetic.gas.mean_state import (
     Balance,
     Medium,
@@ -34,9 +45,14 @@ from crazybilliards.kinetic.gas.mean_state import (
     heated,
     mean_slope,
 )
-from crazybilliards.kinetic.rods.places import beta_scores
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
+
+_SPACINGS = 0, 0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 2.5, 3, 4, 5, 8  # x
+_SHARES = 0, 493, 972, 1438, 2328, 3163, 4315, 5971, 7305, 8329, 9060, 9792, 9973, 10_000
+VARIANCES = {x: v / 10_000 for x, v in zip(_SPACINGS, _SHARES, strict=True)}  # v, to 1e-4
+_VARIANCE = PchipInterpolator(list(VARIANCES), list(VARIANCES.values()))
+_MOST = 1000  # rods of a gap whose exact state is computed; longer chains have the same ends
+_LEAST = 1e-12  # of phi
 
 
 class MeanState(NamedTuple):
@@ -161,3 +177,42 @@ class Descriptions:
             shared,
         )
         return labels.averaged(self.T_of_points, balance)
+
+
+def contact_share(chain: Chain, medium: Medium, cells: Cells, temperature: Array) -> Array:
+    """Return phi at all contacts. ``temperature``: W_v^2 of the cells."""
+    edge = float(temperature[[0, -1]].mean())
+    places, share = _elastic_share(at_temperature(chain, edge * chain.temperature))
+    labels = cells.all_labels
+    if len(places) < chain.size + 1:  # counted from the nearer end
+        labels = np.minimum(np.minimum(labels, chain.size - labels), places[-1] / 2)
+    phi = np.interp(labels, places, share)
+    if chain.spring == "linear":
+        x = medium.lattice * np.sqrt(medium.stiffness)
+        local = cells.between(temperature)
+        phi = phi * _lattice_share(x / np.sqrt(local)) / _lattice_share(x / np.sqrt(edge))
+    return phi
+
+
+def _lattice_share(spacing: Array | float) -> Array:
+    """Return phi of the uniform lattice at a spacing in units of sqrt(T/k)."""
+    return np.maximum(1 - _VARIANCE(np.minimum(spacing, max(VARIANCES))), _LEAST)
+
+
+@lru_cache(maxsize=8)
+def _elastic_share(chain: Chain) -> tuple[Array, Array]:
+    """Return the labels 0 to L and phi there, of an elastic chain with a gap."""
+    if not chain.box and chain.size > _MOST:
+        chain = chain.replace(size=_MOST)
+    recursion, (place, force) = recursion_of(chain), np.empty((2, chain.size))
+    for i in range(chain.size):
+        d, _, share, _ = recursion.distribution(i)
+        place[i], force[i] = chain.reduced_anchors[i] + d @ share, chain.force(d) @ share
+    at_wall = chain.temperature * recursion.distribution(0)[1][0] if chain.box else 0.0
+    # From both ends inwards, so that rounding does not add up: the sum of all forces vanishes.
+    below = -np.concatenate([[0.0], np.cumsum(force)])
+    beyond = np.concatenate([[0.0], np.cumsum(force[::-1])])[::-1]
+    ends = chain.walls if chain.box else (place[0], place[-1])
+    gap = np.diff(place, prepend=ends[0], append=ends[1])
+    share = ((below + beyond) / 2 + at_wall) * gap / chain.temperature
+    return np.arange(chain.size + 1.0), np.maximum(share, _LEAST)

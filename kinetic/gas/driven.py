@@ -38,8 +38,7 @@ from scipy.linalg import solve
 from scipy.special import ndtri, sici
 
 from crazybilliards.kinetic.gas.mean_state import NoSteadyStateError
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 
 _PLACES, _VELOCITIES = 24, 28  # points of half an axis
 _HEAVIEST = 3.0  # Gamma, from which on the grid is the same

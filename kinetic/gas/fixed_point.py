@@ -7,7 +7,7 @@ import numpy as np
 from scipy import optimize
 
 from crazybilliards.kinetic.gas.mean_state import NoSteadyStateError
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array
 
 _KEPT = 5
 _MIXED = 0.5  # share of the residual in a step

@@ -44,7 +44,7 @@ from scipy.linalg import block_diag, eigvals, solve_continuous_lyapunov
 
 from crazybilliards.kinetic.gas.cells import Cells, means
 from crazybilliards.kinetic.gas.mean_state import Medium, NoSteadyStateError
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array
 
 
 class Background(NamedTuple):

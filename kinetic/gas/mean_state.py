@@ -26,8 +26,7 @@ from scipy.special import erf, ndtri
 
 from crazybilliards.kinetic.gas.cells import Cells, means
 from crazybilliards.kinetic.gas.collision_moments import CollisionMoments, moments_of_collisions
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 
 _SAME = 1e-7  # relative change of T, from which on it has converged
 _MOST_TURNS, _MOST_STEPS, _TURNS_OF_SLOPE = 400, 100, 20

@@ -7,7 +7,7 @@ another (:mod:`.agreement`). No number is fitted, and nothing from a simulation 
 
 T being the temperature within a neighbourhood, K h_uu the velocity that it shares, q the width of a
 rod in it (without a gap of the i-th of L points, with a gap in the elastic chain at its
-temperature), and h'_uu the displacement of neighbourhoods (:mod:`.displacements`).
+temperature), and h'_uu the displacement of neighbourhoods (:mod:`.agreement`).
 
 **The mean field** (``correlations=False``, and always for e > 1) takes colliding rods for
 independent. The noise drives the centre of mass as well, which collisions leave alone, so that
@@ -22,15 +22,14 @@ closure, which is too cold at the ends if the damping is above 0.6 sqrt(k m).
 import xarray as xr
 from threadpoolctl import threadpool_limits
 
-from crazybilliards.kinetic.accuracy import Accuracy, expected
+from crazybilliards.kinetic.accuracy import Accuracy, expected, warn_if_unmeasured
 from crazybilliards.kinetic.gas.agreement import in_agreement, mean_field
 from crazybilliards.kinetic.gas.cells import make_cells
 from crazybilliards.kinetic.gas.mean_state import NoSteadyStateError
 from crazybilliards.kinetic.gas.stationary_result import in_vocabulary
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import shown
-from crazybilliards.model.words import check_chain
+from crazybilliards.model.checks import check_chain, shown
 
 _MOST_RODS = 100_000
 _FEWEST_CORRELATED = 4  # rods; fewer have no pairs beyond neighbours
@@ -97,9 +96,12 @@ def steady_state(chain: Chain, *, correlations: bool = True) -> xr.Dataset:
             found = solve(chain, make_cells(chain.size, walled=chain.box > 0))
     except NoSteadyStateError as error:
         raise ValueError(f"the gas has no steady state that could be found: {error}") from error
+    state = in_vocabulary(chain, found)
     # Below e = 1 the mean field was not measured.
     measured = correlations or chain.restitution >= 1
-    return in_vocabulary(chain, found, expected("steady_state", chain) if measured else Accuracy())
+    errors = expected("steady_state", chain) if measured else Accuracy()
+    warn_if_unmeasured("the steady state of the gas", errors.velocity_width)
+    return state.assign_attrs(errors.named())
 
 
 def check_steady_state(chain: Chain, *, correlations: bool = True) -> None:

@@ -6,20 +6,17 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
-from crazybilliards.kinetic.accuracy import Accuracy, warn_if_unmeasured
-from crazybilliards.kinetic.gas.agreement import Fluctuations, Steady
-from crazybilliards.kinetic.gas.cells import at_distance, of_rods
-from crazybilliards.kinetic.gas.mean_state import conductance
-from crazybilliards.kinetic.rods.places import (
-    RodPlaces,
+from crazybilliards.kinetic.exact.places import (
     are_resolved,
     at_temperature,
     elastic_rods,
     exchangeable,
     over_positions,
 )
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.kinetic.gas.agreement import Fluctuations, Steady
+from crazybilliards.kinetic.gas.cells import at_distance, means, of_rods
+from crazybilliards.kinetic.gas.mean_state import conductance
+from crazybilliards.model import Array, Chain
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, result
 
@@ -36,8 +33,8 @@ class Rods(NamedTuple):
     velocity_variance: Array
 
 
-def in_vocabulary(chain: Chain, found: Steady, errors: Accuracy) -> xr.Dataset:
-    """Return the result of ``steady_state``, with the errors of the theory."""
+def in_vocabulary(chain: Chain, found: Steady) -> xr.Dataset:
+    """Return the result of ``steady_state``, but for the errors of the theory."""
     length, W = found.medium.length, chain.free_velocity_width
     rods, of = rods_of(chain, found), found.fluctuations
     variables: Variables = {
@@ -47,8 +44,7 @@ def in_vocabulary(chain: Chain, found: Steady, errors: Accuracy) -> xr.Dataset:
     if np.isfinite(rods.width).all():
         variables["displacement_width"] = ("particle", length * rods.width)
     if chain.box:
-        force = chain.mass * W**2 / length * found.mean.force[[0, -1]]
-        variables["wall_force"] = ("wall", force)
+        variables["wall_force"] = ("wall", chain.mass * W**2 / length * found.mean.force[[0, -1]])
     coordinates, fields = _over_positions(chain, found, rods)
     variables |= fields
     if of is not None:
@@ -56,19 +52,16 @@ def in_vocabulary(chain: Chain, found: Steady, errors: Accuracy) -> xr.Dataset:
         coordinates["mode"] = np.arange(float(found.cells.rods.size))
         if "velocity_covariance" in variables:
             coordinates["separation"] = np.arange(float(chain.size))
-    theory = "gas along labels" if of else "gas along labels, mean field"
-    dataset = result(
+    return result(
         chain,
         variables,
         coordinates=coordinates,
         source="theory",
-        method={"theory": theory},
+        method={"theory": "gas along labels" if of else "gas along labels, mean field"},
         residual=found.residual,
+    ).assign_attrs(
+        iterations=found.iterations, density_of=OF_RODS if are_resolved(chain) else OF_FLUID
     )
-    warn_if_unmeasured("the steady state of the gas", errors.velocity_width)
-    density_of = OF_RODS if are_resolved(chain) else OF_FLUID
-    dataset.attrs |= {"iterations": found.iterations, "density_of": density_of, **errors.named()}
-    return dataset
 
 
 def rods_of(chain: Chain, found: Steady) -> Rods:
@@ -79,7 +72,15 @@ def rods_of(chain: Chain, found: Steady) -> Rods:
         np.interp(middles, cells.centres, field)
         for field in (found.mean.place, found.mean.temperature)
     )
-    own = _own_widths(chain, found, T)
+    own = np.full(chain.size, np.nan)  # the width of a rod in its neighbourhood
+    if are_resolved(chain) and found.labels is not None:
+        law, score = exchangeable(chain.size), found.labels.score
+        y = PchipInterpolator(score, found.labels.place)(np.clip(law.places, score[0], score[-1]))
+        own = np.sqrt(law.mean(y**2) - law.mean(y) ** 2)
+    elif are_resolved(chain):
+        mean = float(T.mean())
+        elastic = elastic_rods(at_temperature(chain, mean * chain.temperature))
+        own = elastic.width() / medium.length * np.sqrt(T / mean)
     if found.fluctuations is None:
         share, K = 1 / chain.size, medium.stiffness
         of_centre = share * (1 - T) / K if medium.exponent == 2 and K else 0.0
@@ -87,22 +88,7 @@ def rods_of(chain: Chain, found: Steady) -> Rods:
     collective = np.interp(middles, cells.contacts, found.closure.collective)
     of = found.fluctuations.displaced
     displaced = at_distance(of.displacement, of.cells.centres, middles, 0.0)
-    width = np.sqrt(np.maximum(own**2 + displaced, 0.0))
-    return Rods(place, width, T + collective)
-
-
-def _own_widths(chain: Chain, found: Steady, T: Array) -> Array:
-    """Return the widths of the rods in their neighbourhoods; NaN of too many rods."""
-    if not are_resolved(chain):
-        return np.full(chain.size, np.nan)
-    if found.labels is not None:
-        law = exchangeable(chain.size)
-        score, place = found.labels.score, found.labels.place
-        y = PchipInterpolator(score, place)(np.clip(law.places, score[0], score[-1]))
-        return np.sqrt(law.mean(y**2) - law.mean(y) ** 2)
-    mean = float(T.mean())
-    elastic = elastic_rods(at_temperature(chain, mean * chain.temperature))
-    return elastic.width() / found.medium.length * np.sqrt(T / mean)
+    return Rods(place, np.sqrt(np.maximum(own**2 + displaced, 0.0)), T + collective)
 
 
 def _over_positions(chain: Chain, found: Steady, rods: Rods) -> tuple[dict[str, Array], Variables]:
@@ -110,18 +96,29 @@ def _over_positions(chain: Chain, found: Steady, rods: Rods) -> tuple[dict[str, 
     medium, W, R = found.medium, chain.free_velocity_width, chain.radius
     cells = found.labels.fine if found.labels else found.cells
     y = medium.length * (found.labels.place if found.labels else found.mean.place)
-    label, y = _to_the_ends(cells.centres - chain.size / 2, y, chain.size / 2)
+    label, end = cells.centres - chain.size / 2, chain.size / 2
+    if label.size > 1:  # the ends of the chain, half a cell beyond the outermost centres
+        half = (end - label[-1]) / (label[-1] - label[-2]) * (y[-1] - y[-2])
+        label = np.pad(label, 1, constant_values=(-end, end))
+        y = np.pad(y, 1, constant_values=(y[0] - half, y[-1] + half))
     places = y + 2 * R * label
     x = position_grid(chain, float(np.abs(places).max() - chain.anchors[-1]))
     shapes = None
     if are_resolved(chain):
-        shapes = _shapes(chain, medium.length, rods)
+        # The elastic chain's rods, moved and stretched to these moments, but not into walls.
+        temperature = chain.temperature * float(rods.velocity_variance.mean())
+        elastic = elastic_rods(at_temperature(chain, temperature))
+        mean, width = medium.length * rods.place, medium.length * rods.width
+        if chain.box:
+            ends = elastic.places[:, [0, -1]].T
+            room = np.abs(np.array(chain.walls)[:, None] - mean) / np.abs(ends - elastic.mean())
+            width = np.minimum(width, room.min(axis=0) * elastic.width())
+        shapes = elastic.moved(mean, width)
         farthest = float(np.abs(shapes.places).max() - chain.reduced_anchors[-1])
         x = max(x, position_grid(chain, farthest), key=len)
     number = np.interp(x, places, label + chain.size / 2)
     number[x < places[0]], number[x > places[-1]] = 0.0, chain.size
-    middles: Array = np.arange(0.5, chain.size)
-    T = np.interp(number, middles, rods.velocity_variance)
+    T = np.interp(number, np.arange(0.5, chain.size), rods.velocity_variance)
     fluid = np.gradient(np.interp(x, places, label), x)
     density, count = over_positions(chain, x, shapes) if shapes else (fluid, number)
     variables: Variables = {
@@ -132,28 +129,6 @@ def _over_positions(chain: Chain, found: Steady, rods: Rods) -> tuple[dict[str, 
         "heat_flux": ("x", _heat_flux(chain, found, number)),
     }
     return {"x": x}, variables
-
-
-def _to_the_ends(label: Array, y: Array, end: float) -> tuple[Array, Array]:
-    """Add the ends of the chain, half a cell beyond the outermost centres."""
-    if label.size == 1:
-        return label, y
-    half = (end - label[-1]) / (label[-1] - label[-2]) * (y[-1] - y[-2])
-    return np.pad(label, 1, constant_values=(-end, end)), np.pad(
-        y, 1, constant_values=(y[0] - half, y[-1] + half)
-    )
-
-
-def _shapes(chain: Chain, length: float, rods: Rods) -> RodPlaces:
-    """Return the elastic chain's rods, moved and stretched to these moments, but not into walls."""
-    temperature = chain.temperature * float(rods.velocity_variance.mean())
-    elastic = elastic_rods(at_temperature(chain, temperature))
-    mean, width = length * rods.place, length * rods.width
-    if chain.box:
-        own, ends = elastic.mean(), elastic.places[:, [0, -1]].T
-        room = np.abs(np.array(chain.walls)[:, None] - mean) / np.abs(ends - own)
-        width = np.minimum(width, room.min(axis=0) * elastic.width())
-    return elastic.moved(mean, width)
 
 
 def _heat_flux(chain: Chain, found: Steady, label: Array) -> Array:
@@ -180,10 +155,9 @@ def _of_pairs(chain: Chain, found: Steady, of: Fluctuations, rods: Rods) -> Vari
         for field in (state.shared, state.pressure, state.loss)
     )
     variance = rods.velocity_variance
-    own = (variance[1:] + variance[:-1]) / 2
     variables: Variables = {
         "neighbour_covariance": ("contact", W**2 * shared),
-        "relative_temperature": ("contact", W**2 * (own - shared)),
+        "relative_temperature": ("contact", W**2 * (means(variance) - shared)),
         "contact_force": ("contact", chain.mass * W**2 / medium.length * pressure),
         "contact_loss": ("contact", chain.mass / 2 * W**3 / medium.length * loss),
         "mode_velocity_variance": ("mode", W**2 * _mode_variances(chain, found, of, rods)),

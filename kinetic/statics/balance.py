@@ -51,8 +51,7 @@ from crazybilliards.kinetic.statics.profiles import (
 )
 from crazybilliards.kinetic.statics.variable_temperature import solve_variable_temperature
 from crazybilliards.kinetic.statics.wright_closure import solve_wright_closure
-from crazybilliards.model import Chain
-from crazybilliards.model.parameters import WALLS_AND_MASSES
+from crazybilliards.model import WALLS_AND_MASSES, Chain
 from crazybilliards.model.vocabulary import OF_FLUID
 
 
@@ -105,10 +104,7 @@ def force_balance(
     chain, prescribed, variance = check_force_balance(chain, displacement, velocity_variance)
     if prescribed is not None:
         return solve_wright_closure(chain, prescribed).assign_attrs(density_of=OF_FLUID)
-    if variance is not None:
-        result = solve_variable_temperature(chain, variance)
-    else:
-        result = solve_label_closure(chain)
+    result = solve_variable_temperature(chain, variance) if variance else solve_label_closure(chain)
     if velocity_variance is not None:  # measured for the free variance only
         result.attrs |= Accuracy().named()
     warn_if_unmeasured("the force balance", result.attrs["density_model_error"])

@@ -36,8 +36,7 @@ from scipy.optimize import brentq
 from scipy.special import wrightomega
 
 from crazybilliards.kinetic.accuracy import expected
-from crazybilliards.model import Chain, spring
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain, spring
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
 
@@ -56,7 +55,7 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
     x = position_grid(chain, fluid_reach(chain))
     # The middle of rod i has the label i - 1/2.
     rods = state.unit * state.at(chain.rank / chain.size)
-    dataset = closed_by_labels(
+    return closed_by_labels(
         chain,
         x,
         *state.fields(chain, x),
@@ -65,9 +64,7 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
         wall_force=np.full(2, chain.temperature * state.at_walls * chain.size),
         theory=BY_LABELS,
         residual=state.residual,
-    )
-    dataset.attrs |= expected("force_balance", chain).named()
-    return dataset
+    ).assign_attrs(expected("force_balance", chain).named())
 
 
 def closed_by_labels(

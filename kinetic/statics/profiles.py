@@ -17,8 +17,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 from crazybilliards.model.checks import check_real, refuse_units, shown
 from crazybilliards.model.vocabulary import refuse_unread, require, require_all_particles
 

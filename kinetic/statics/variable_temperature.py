@@ -32,17 +32,14 @@ from skfem.helpers import grad
 
 from crazybilliards.kinetic.statics.label_closure import closed_by_labels, stationary
 from crazybilliards.kinetic.statics.profiles import Profile
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 from crazybilliards.model.grid import position_grid
 
 Warmth = Callable[[Array], Array]
 
 _THEORY = "force balance, by labels, prescribed velocity variance"
 
-_CELLS = 1200
-_MESHES = 3
-_MOST_STEPS = 200
+_CELLS, _MESHES, _MOST_STEPS = 1200, 3, 200
 _WIDENINGS = 4  # of the mesh, for a W^2(x) that grows outwards
 _CAP = 2.0
 _DEPTH = 6.0  # from an edge into a plateau where cells begin to grow, in thermal lengths

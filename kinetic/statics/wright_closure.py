@@ -23,8 +23,7 @@ from scipy.special import wrightomega
 
 from crazybilliards.kinetic.statics.label_closure import fluid_reach
 from crazybilliards.kinetic.statics.profiles import Profile
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 from crazybilliards.model.grid import position_grid, thermal_reach
 from crazybilliards.model.vocabulary import result
 
@@ -110,8 +109,5 @@ def _pull(chain: Chain, profile: Profile, x: Array) -> Array:
 
 def _partial_integrals(points: Array) -> Array:
     """Matrix that integrates a function known at the points from -1 to each of them."""
-    powers = legendre.legvander(points, points.size - 1)
-    integrals = np.array(
-        [legendre.legval(points, legendre.legint(unit, lbnd=-1)) for unit in np.eye(points.size)]
-    ).T
-    return integrals @ np.linalg.inv(powers)
+    integrals = legendre.legval(points, legendre.legint(np.eye(points.size), lbnd=-1)).T
+    return integrals @ np.linalg.inv(legendre.legvander(points, points.size - 1))

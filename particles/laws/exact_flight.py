@@ -25,8 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import expm
 
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 from crazybilliards.model.kernels import kernel
 
 

@@ -15,9 +15,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crazybilliards.model import Chain
+from crazybilliards.model import WALLS_AND_MASSES, Chain
 from crazybilliards.model.kernels import inlined
-from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws import (
     contact_dynamics,
     event_driven,
@@ -85,14 +84,6 @@ class Scratch(NamedTuple):
     inverse: NDArray[np.float64]  # inverse masses, with the walls; empty: all 1, and no walls
     joint: NDArray[np.float64]  # the same of clusters, at their outermost rods
     patience: NDArray[np.int64]  # collisions after which a step is given up; Ctrl-C lowers it, (1,)
-
-
-def inverse_masses(chain: Chain) -> NDArray[np.float64]:
-    """Return 1/m of the rods and, between them, of the walls, for ``make_scratch``."""
-    if not chain.box and chain.mass_ratio == 1:
-        return np.zeros(0)
-    inverse = chain.mass / chain.rod_masses
-    return np.array([0.0, *inverse, 0.0]) if chain.box else inverse
 
 
 def make_scratch(

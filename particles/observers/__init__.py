@@ -8,7 +8,7 @@ from collections.abc import Collection
 from crazybilliards.model.checks import check_choice, is_list, shown
 from crazybilliards.particles.observers.avalanches import Avalanches, TriggeredCollisions
 from crazybilliards.particles.observers.base import Observer
-from crazybilliards.particles.observers.collisions import Collisions
+from crazybilliards.particles.observers.collisions import Collisions, Walls
 from crazybilliards.particles.observers.covariances import Covariances
 from crazybilliards.particles.observers.density import Density
 from crazybilliards.particles.observers.energy import Energy
@@ -17,7 +17,6 @@ from crazybilliards.particles.observers.modes import Modes
 from crazybilliards.particles.observers.raw import Raw
 from crazybilliards.particles.observers.time_correlations import TimeCorrelations
 from crazybilliards.particles.observers.velocities import Velocities
-from crazybilliards.particles.observers.walls import Walls
 from crazybilliards.particles.observers.widths import Widths
 from crazybilliards.particles.run import Run
 

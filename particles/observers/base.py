@@ -4,8 +4,6 @@ Every replica (in an ensemble every group of replicas) has its own observers. Th
 order, so that results do not depend on the number of threads.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
@@ -16,8 +14,8 @@ from typing import Any, ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array, merge_pairs
+from crazybilliards.model import Array, Chain
+from crazybilliards.model.arrays import merge_pairs
 from crazybilliards.particles.laws.avalanche import Tally
 from crazybilliards.particles.observers.error_bars import jackknife
 from crazybilliards.particles.run import Run

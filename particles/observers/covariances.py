@@ -63,9 +63,6 @@ class Covariances(Averaged):
     def report(self, counts: Integers) -> Variables:
         last = self.furthest + 1
 
-        def of_velocities(average: Array) -> Array:
-            return _within_chain(average[..., :last, :])
-
         def of_gaps(average: Array) -> Array:
             products, mean = average[..., last:-1, :-1].copy(), average[..., -1, :-1]
             size = mean.shape[-1]
@@ -82,10 +79,12 @@ class Covariances(Averaged):
             "neighbour_covariance": lambda average: average[..., 1, :-1],
             "relative_temperature": temperature,
         }
-        along = "separation"
+        of_velocities = {
+            "velocity_covariance": lambda average: _within_chain(average[..., :last, :])
+        }
         return {
-            **self.averages({"velocity_covariance": of_velocities}, counts, "particle", along),
-            **self.averages({"gap_covariance": of_gaps}, counts, "contact", along),
+            **self.averages(of_velocities, counts, "particle", "separation"),
+            **self.averages({"gap_covariance": of_gaps}, counts, "contact", "separation"),
             **self.averages(of_contacts, counts, "contact"),
         }
 
@@ -97,5 +96,4 @@ def _within_chain(by_separation: Array) -> Array:
     """Return (..., rods, separations) from (..., separations, rods), NaN beyond the chain."""
     values = np.moveaxis(by_separation, -1, -2)
     size, separations = values.shape[-2:]
-    inside = np.arange(size)[:, None] + np.arange(separations) < size
-    return np.where(inside, values, np.nan)
+    return np.where(np.arange(size)[:, None] + np.arange(separations) < size, values, np.nan)

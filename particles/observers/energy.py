@@ -6,8 +6,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from crazybilliards.model import WALLS_AND_MASSES
 from crazybilliards.model.arrays import merge_pairs
-from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.observers.base import Array, Integers, Observer, Snapshots, Variables
 from crazybilliards.particles.observers.error_bars import jackknife
 from crazybilliards.particles.run import Run
@@ -64,7 +64,11 @@ class Energy(Observer):
         else:
             reached = self._reached()
             energies, numbers = self.sums[:, reached], self.counts[:, reached]
-        value, error = jackknife(_with_total, energies, numbers)
+        value, error = jackknife(
+            lambda both: np.concatenate([both, both.sum(axis=-1, keepdims=True)], axis=-1),
+            energies,
+            numbers,
+        )
         if not self.run.ensemble:
             unknown = (numbers == 0).any(axis=0)
             value[unknown] = error[unknown] = np.nan
@@ -89,7 +93,3 @@ class Energy(Observer):
 
 def _keeps_every(run: Run) -> bool:
     return run.ensemble or sum(observer.shares_time for observer in run.observers) > 1
-
-
-def _with_total(energies: Array) -> Array:
-    return np.concatenate([energies, energies.sum(axis=-1, keepdims=True)], axis=-1)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array
 
 
 def jackknife(

@@ -5,8 +5,8 @@ from typing import Self
 
 import numpy as np
 
+from crazybilliards.model import WALLS_AND_MASSES
 from crazybilliards.model.checks import check_integer
-from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.particles.laws.avalanche import Tally
 from crazybilliards.particles.laws.impacts import Speeds, make_impacts
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
@@ -76,8 +76,7 @@ class Impacts(Averaged):
         self.current = make_impacts(run.chain.size)
         scale = run.chain.free_velocity_width
         if not 0 < scale < np.inf:
-            step = run.time_step
-            scale = max(typical_speed(run.chain, step, y, v) for y, v in run.starts) or 1.0
+            scale = max(typical_speed(run.chain, run.time_step, *one) for one in run.starts) or 1.0
         self.edges = FINEST * scale * np.sinh(np.linspace(0, LAST, self.bins + 1))
         self.numbers = np.zeros((run.chain.size - 1, self.bins), dtype=np.int64)
 
@@ -119,6 +118,5 @@ class Impacts(Averaged):
 
 def _temperature(momentum: Array, energy: Array) -> Array:
     """Return (pi/16) (<w^2>/<w>)^2 = (pi/4) (energy/momentum)^2, NaN without any collision."""
-    unknown = np.full_like(momentum, np.nan)
-    ratio = np.divide(energy, momentum, out=unknown, where=momentum > 0)
+    ratio = np.divide(energy, momentum, out=np.full_like(momentum, np.nan), where=momentum > 0)
     return np.asarray(np.pi / 4 * ratio**2)

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from crazybilliards.model import Chain
-from crazybilliards.model.parameters import WALLS_AND_MASSES
+from crazybilliards.model import WALLS_AND_MASSES, Chain
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
 

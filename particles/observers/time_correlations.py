@@ -4,10 +4,9 @@ import math
 
 import numpy as np
 
-from crazybilliards.model import Chain
+from crazybilliards.model import WALLS_AND_MASSES, Chain
 from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.kernels import kernel
-from crazybilliards.model.parameters import WALLS_AND_MASSES
 from crazybilliards.model.warn import warn_user
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.observers.modes import momentum_weights

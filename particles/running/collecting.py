@@ -6,8 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from crazybilliards.model.arrays import Array
-from crazybilliards.model.parameters import WALLS_AND_MASSES
+from crazybilliards.model import WALLS_AND_MASSES, Array
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles.laws.law import EXACT, TURN
 from crazybilliards.particles.observers.base import Integers, Variables
@@ -90,8 +89,7 @@ def _time_step_error(run: Run, measured: xr.Dataset) -> float:
         masses = run.chain.rod_masses[measured.particle.values.astype(int) - 1]
         widths = measured.velocity_width.values * masses / run.chain.rod_masses[:2].min()
         width = float(np.min(widths, initial=np.inf, where=widths > 0))
-    how = {"stepper": run.stepper, "method": run.method}
-    return time_step_error(run.chain, run.time_step, width, **how)
+    return time_step_error(run.chain, run.time_step, width, stepper=run.stepper, method=run.method)
 
 
 def only_chosen(

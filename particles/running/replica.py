@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crazybilliards.model.arrays import Array, merge_pairs
+from crazybilliards.model import Array
+from crazybilliards.model.arrays import merge_pairs
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.law import make_scratch
 from crazybilliards.particles.noise import STATE, make_noise

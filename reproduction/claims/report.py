@@ -15,7 +15,7 @@ from typing import get_args
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.layout import house_style
+from crazybilliards.comparison.drawing import house_style
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.reproduction.claims.study import Quality, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Verdict

@@ -19,8 +19,7 @@ from scipy.stats import norm, t
 
 from crazybilliards.comparison.combining import combine
 from crazybilliards.comparison.sweeps import Case
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate
 
 Quality = Literal["quick", "full"]

@@ -16,7 +16,7 @@ from typing import Any, Literal, NamedTuple, TypeVar
 
 from scipy.stats import norm
 
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array
 
 Verdict = Literal["reproduced", "not reproduced", "cannot be decided", "undecided"]
 Interval = tuple[float, float]

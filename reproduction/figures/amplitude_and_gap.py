@@ -8,8 +8,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import along_the_chain, draw_rods
-from crazybilliards.comparison.layout import entitle, legend_above, panels
+from crazybilliards.comparison.drawing import (
+    along_the_chain,
+    draw_rods,
+    entitle,
+    legend_above,
+    panels,
+)
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction import chains
@@ -72,8 +77,7 @@ def _differences(results: Results, restitution: float, name: str) -> list[Estima
 
     group = _BY_AMPLITUDE[restitution].values()
     reference, *others = (runs.estimates(results, tenths) for runs in group)
-    plotted = _scaled(next(iter(group)).mean(results))[name].values
-    span = float(np.ptp(axis(plotted)))
+    span = float(np.ptp(axis(_scaled(next(iter(group)).mean(results))[name].values)))
     return [
         tenth.minus(first).times(1 / span)
         for other in others

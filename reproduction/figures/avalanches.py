@@ -5,10 +5,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import draw_points
-from crazybilliards.comparison.layout import entitle, panels
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.comparison.drawing import draw_points, entitle, panels
+from crazybilliards.model import Array, Chain
 from crazybilliards.reproduction import chains
 from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around, at_choices

@@ -11,11 +11,17 @@ from matplotlib.figure import Figure
 from scipy.optimize import least_squares
 
 from crazybilliards.comparison.distances import distances_in_plot
-from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods, mark_clipped
-from crazybilliards.comparison.layout import legend_above, panels
+from crazybilliards.comparison.drawing import (
+    COLOURS,
+    along_the_chain,
+    draw_rods,
+    legend_above,
+    mark_clipped,
+    panels,
+)
 from crazybilliards.comparison.widths import central_width
-from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.arrays import Array, middle_tenth
+from crazybilliards.model import Array, Chain, chain_of
+from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.reproduction import chains
 from crazybilliards.reproduction.claims.study import Results, Runs, Study
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, at_choices
@@ -50,14 +56,15 @@ def _claims_by_length(results: Results) -> list[Claim]:
             (_confinement, "W_x/s in the centre, middle tenth", narrows, "fig.3_2, inset"),
         ):
             first, second, about = chains.difference(results, _INELASTIC, (small, large), quantity)
-            claim = Claim(
-                statement,
-                f"{name}: {first} less {second}, difference",
-                **about,
-                source=f"section seq:e_0, {source}",
-                ours="the sizes and the time step",
+            claims.append(
+                Claim(
+                    statement,
+                    f"{name}: {first} less {second}, difference",
+                    **about,
+                    source=f"section seq:e_0, {source}",
+                    ours="the sizes and the time step",
+                )
             )
-            claims.append(claim)
     return claims
 
 
@@ -98,13 +105,14 @@ def _claims_by_restitution(results: Results) -> list[Claim]:
     claims = []
     for low, high in itertools.pairwise(_RUNS):
         of_high, of_low, numbers = chains.difference(results, _STEPS, (high, low), _swelling)
-        claim = Claim(
-            f"the mean displacement grows from e = {low:g} to {high:g}",
-            f"slope of <dx>/s against i_n: {of_low} and {of_high}, difference",
-            **numbers,
-            source="section seq:e_larger, fig.5",
+        claims.append(
+            Claim(
+                f"the mean displacement grows from e = {low:g} to {high:g}",
+                f"slope of <dx>/s against i_n: {of_low} and {of_high}, difference",
+                **numbers,
+                source="section seq:e_larger, fig.5",
+            )
         )
-        claims.append(claim)
     return [*claims, _power_law_claim(results), *_energy_claims(results)]
 
 
@@ -155,8 +163,7 @@ def _off_the_best(run: xr.Dataset, law: Law) -> Estimate:
     values = least_squares(residuals, (shift[0], -0.5, 0.0), x_scale="jac").x
     fine = np.geomspace(1, i[-1], 2000)
     distances = distances_in_plot(i, shift, fine, law(fine, *values))
-    errors = half.mean_displacement_error.values / np.ptp(shift)
-    return beyond_the_eye(distances, errors)
+    return beyond_the_eye(distances, half.mean_displacement_error.values / np.ptp(shift))
 
 
 def _energy_claims(results: Results) -> list[Claim]:

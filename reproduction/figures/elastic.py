@@ -10,9 +10,14 @@ from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
 from crazybilliards.comparison.distances import deviation, distances_in_plot
-from crazybilliards.comparison.drawing import along_the_chain, draw_points, draw_rods
+from crazybilliards.comparison.drawing import (
+    along_the_chain,
+    draw_points,
+    draw_rods,
+    entitle,
+    panels,
+)
 from crazybilliards.comparison.fits import fit_arctanh
-from crazybilliards.comparison.layout import entitle, panels
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, elastic_tree
 from crazybilliards.comparison.side_by_side.grid_figures import draw_density
 from crazybilliards.comparison.stationary_theories import TITLES

@@ -9,11 +9,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS
-from crazybilliards.comparison.layout import panels
+from crazybilliards.comparison.drawing import COLOURS, panels
 from crazybilliards.kinetic.gas.criticality import weak_damping_growth_rate
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around, at_choices
 from crazybilliards.reproduction.fits import fit_growth, fit_singularity

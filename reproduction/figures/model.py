@@ -7,8 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from crazybilliards.comparison.drawing import COLOURS
-from crazybilliards.comparison.layout import panels
+from crazybilliards.comparison.drawing import COLOURS, panels
 from crazybilliards.model import Chain
 from crazybilliards.reproduction.claims.study import Results, Study
 

@@ -9,10 +9,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 from scipy.optimize import curve_fit
 
-from crazybilliards.comparison.layout import legend_above, panels
+from crazybilliards.comparison.drawing import legend_above, panels
 from crazybilliards.comparison.widths import border_width, central_width
-from crazybilliards.model import chain_of
-from crazybilliards.model.arrays import Array, middle_tenth
+from crazybilliards.model import Array, chain_of
+from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.reproduction import chains, distributions
 from crazybilliards.reproduction.claims.study import Results, Runs, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, at_choices, in_plot

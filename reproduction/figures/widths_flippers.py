@@ -9,12 +9,17 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.distances import distances_in_plot
-from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_rods
+from crazybilliards.comparison.drawing import (
+    COLOURS,
+    along_the_chain,
+    draw_rods,
+    legend_above,
+    panels,
+)
 from crazybilliards.comparison.fits import fit_border_power_law
-from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import central_width
-from crazybilliards.model import Chain, chain_of
-from crazybilliards.model.arrays import Array, middle_tenth
+from crazybilliards.model import Array, Chain, chain_of
+from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.reproduction import chains
 from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort, share_of_runs
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, at_choices

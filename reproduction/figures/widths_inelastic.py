@@ -10,9 +10,15 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, draw_points, draw_rods, mark_clipped
+from crazybilliards.comparison.drawing import (
+    COLOURS,
+    draw_points,
+    draw_rods,
+    legend_above,
+    mark_clipped,
+    panels,
+)
 from crazybilliards.comparison.fits import Fit, fit_border_power_law
-from crazybilliards.comparison.layout import legend_above, panels
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
 from crazybilliards.reproduction import chains

@@ -7,9 +7,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import COLOURS, along_the_chain, draw_points, draw_rods
+from crazybilliards.comparison.drawing import (
+    COLOURS,
+    TWO_COLUMNS,
+    along_the_chain,
+    draw_points,
+    draw_rods,
+    legend_above,
+    letter,
+)
 from crazybilliards.comparison.fits import Fit
-from crazybilliards.comparison.layout import TWO_COLUMNS, legend_above, letter
 from crazybilliards.comparison.widths import central_width
 from crazybilliards.reproduction import chains
 from crazybilliards.reproduction.claims.study import Results, Runs, Study

@@ -9,7 +9,7 @@ import psutil
 import pytest
 from forked import until
 
-from crazybilliards.comparison.sweeps import Case, process_pool, processes, run_cases
+from crazybilliards.comparison.sweeps import Case, process_pool, run_cases, running
 from crazybilliards.model import Chain
 
 QUIET = {"progress": False}
@@ -61,7 +61,7 @@ def test_a_process_killed_in_the_middle_costs_nothing(here, tmp_path):
 @pytest.mark.posix
 def test_what_kills_its_process_twice_has_failed_and_costs_nothing_else(monkeypatch):
     """In processes that import nothing, which takes seconds each."""
-    monkeypatch.setattr(processes, "_prepare_process", None)
+    monkeypatch.setattr(running, "_prepare_process", None)
     with process_pool(1) as pool:
         before, deadly, after = (
             pool.submit(*call) for call in [(abs, -1), (signal.raise_signal, 9), (abs, -2)]

@@ -14,8 +14,7 @@ from installation import run
 from crazybilliards.apps.commands.output import picture
 from crazybilliards.comparison import film, overlay
 from crazybilliards.comparison.curves import axis_label
-from crazybilliards.comparison.drawing import mark_clipped
-from crazybilliards.comparison.layout import house_style, legend_above, panels
+from crazybilliards.comparison.drawing import house_style, legend_above, mark_clipped, panels
 from crazybilliards.comparison.side_by_side.grid_figures import draw_profile
 from crazybilliards.comparison.stationary_theories import TITLES
 from crazybilliards.kinetic import equilibrium, steady_state

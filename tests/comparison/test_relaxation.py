@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from crazybilliards.comparison import compare_relaxation, deviation, film, smooth
-from crazybilliards.comparison.layout import house_style
+from crazybilliards.comparison.drawing import house_style
 from crazybilliards.comparison.side_by_side import relaxation
 from crazybilliards.comparison.side_by_side.relaxation import cloud, condensed, label_distances
 from crazybilliards.comparison.side_by_side.relaxation_figures import (

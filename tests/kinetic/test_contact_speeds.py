@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crazybilliards.kinetic.gas.contact_speeds import SQUARES, contact_speed
+from crazybilliards.kinetic.gas.closure import SQUARES, contact_speed
 from studies.contact_speeds import contact_square, make_mesh, solve
 
 COARSE = (48, 75), (64, 100)

@@ -5,9 +5,8 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import curve_fit
 
-from crazybilliards.kinetic.gas.agreement import in_agreement
+from crazybilliards.kinetic.gas.agreement import in_agreement, relaxing_pairs
 from crazybilliards.kinetic.gas.cells import make_cells
-from crazybilliards.kinetic.gas.displacements import relaxing_pairs
 from crazybilliards.kinetic.gas.stationary_result import rods_of
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate

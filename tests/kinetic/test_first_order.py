@@ -17,9 +17,8 @@ import pytest
 from numpy.polynomial.hermite_e import hermeval
 from scipy.stats import norm
 
-from crazybilliards.kinetic.gas.agreement import in_agreement
+from crazybilliards.kinetic.gas.agreement import in_agreement, relaxing_pairs
 from crazybilliards.kinetic.gas.cells import make_cells
-from crazybilliards.kinetic.gas.displacements import relaxing_pairs
 from crazybilliards.model import Chain
 
 CHAIN = Chain(size=100, restitution=0.99999)

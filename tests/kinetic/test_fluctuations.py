@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from crazybilliards.kinetic.gas.cells import make_cells
-from crazybilliards.kinetic.gas.closure import implied
-from crazybilliards.kinetic.gas.contact_speeds import contact_speed
+from crazybilliards.kinetic.gas.closure import contact_speed, implied
 from crazybilliards.kinetic.gas.fluctuations import (
     Background,
     PairCovariance,

@@ -6,8 +6,8 @@ from independent_points import rods_of_independent_points
 from scipy.special import ndtr
 
 from crazybilliards.kinetic import force_balance, hydrodynamics, steady_state
+from crazybilliards.kinetic.exact.places import exchangeable
 from crazybilliards.kinetic.gas.closure import Closure
-from crazybilliards.kinetic.rods.places import exchangeable
 from crazybilliards.model import Chain
 
 

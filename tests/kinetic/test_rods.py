@@ -14,8 +14,9 @@ from crazybilliards.kinetic import (
     rod_by_rod,
     steady_state,
 )
-from crazybilliards.kinetic.rods import fluids, places
-from crazybilliards.kinetic.rods.places import elastic_rods, over_positions
+from crazybilliards.kinetic import rods as fluids
+from crazybilliards.kinetic.exact import places
+from crazybilliards.kinetic.exact.places import elastic_rods, over_positions
 from crazybilliards.model import Chain, load, save
 from crazybilliards.particles import simulate
 

@@ -1,24 +1,118 @@
-"""The paper's fits along the chain: mean displacements, and widths that fall from both borders."""
+"""The paper's fits along the chain, with uncertainties, and what other fits share with them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-from scipy.optimize import curve_fit
+from numpy.typing import ArrayLike
+from scipy.optimize import OptimizeWarning, curve_fit
 
-from crazybilliards.comparison.fits.fit import Fit, least_squares, root_mean_square
-from crazybilliards.model import chain_of
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, chain_of
+from crazybilliards.model.arrays import check_numbers
+from crazybilliards.model.checks import refuse_units, shown
 from crazybilliards.model.vocabulary import require, require_all_particles
 
 _STEEPEST = -5.0  # of the exponents that are tried
 _STARTS = ((-0.5, 0.0), (-0.5, 0.8), (-1.0, -5.0), (-0.1, 0.0))  # of nu and c
 _LEAST_RODS = 5
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted curve: call it with x to get its values.
+
+    Every number is an attribute too, a standard error as ``NAME_error``: ``fit.exponent``,
+    ``fit.exponent_error``, ``fit.misfit``.
+
+    Attributes
+    ----------
+    parameters, errors
+        The parameters of the curve and their standard errors, by name.
+    curve
+        The function of x and the parameters, by name.
+    quality
+        How well the curve agrees with the points, and other numbers of the fit, by name.
+    """
+
+    parameters: Mapping[str, float]
+    errors: Mapping[str, float]
+    curve: Callable[..., Array] = field(repr=False)
+    quality: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Make every number an attribute."""
+        of_errors = {f"{name}_error": error for name, error in self.errors.items()}
+        vars(self).update({**self.parameters, **of_errors, **self.quality})
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    def __call__(self, x: ArrayLike) -> Array:
+        """Return the values of the curve."""
+        refuse_units("x", x)
+        return np.asarray(self.curve(np.asarray(x, dtype=float), **self.parameters))
+
+
+def check_points(**columns: object) -> list[Array]:
+    """Return the columns as arrays; a ValueError names the arguments that do not fit."""
+    arrays = [check_numbers(name, values) for name, values in columns.items()]
+    shapes = [array.shape for array in arrays]
+    if len(set(shapes)) > 1 or arrays[0].ndim != 1:
+        raise ValueError(
+            f"{', '.join(columns)} must have one dimension and the same length, got the shapes "
+            f"{', '.join(map(str, shapes))}"
+        )
+    for name, array in zip(columns, arrays, strict=True):
+        if not np.isfinite(array).all():
+            raise ValueError(f"{name} must be finite, got {shown(columns[name])}")
+    return arrays
+
+
+def least_squares(
+    what: str,
+    curve: Callable[..., Array],
+    points: tuple[Array, Array],
+    start: tuple[float, ...],
+    error: Array | None = None,
+) -> tuple[Array, Array, dict[str, Any]]:
+    """Fit a curve to points (x, y); return its parameters, their covariance, and the quality.
+
+    Without standard errors of y the covariance follows from the scatter, and the quality is the
+    ``misfit``. With ``error`` it is ``chi_square``, the sum of the squared residuals in standard
+    errors over the degrees of freedom (nan if there are none), and where this is above 1, the
+    covariance is larger by it. ``what`` names the curve in the error of points that do not fit.
+    """
+    x, y = points
+    try:
+        # A step of the search may overflow. What it finds must not.
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("error", OptimizeWarning)  # there is no covariance
+            values, covariance = curve_fit(
+                curve, x, y, p0=start, sigma=error, absolute_sigma=error is not None, maxfev=20_000
+            )
+            residuals = y - curve(x, *values)
+    except (RuntimeError, OptimizeWarning) as problem:
+        raise ValueError(f"no {what} fits: {problem}") from problem
+    if not all(np.isfinite(each).all() for each in (values, covariance, residuals)):
+        raise ValueError(f"no {what} fits: the search for its parameters runs away")
+    if error is None:
+        return values, covariance, {"misfit": root_mean_square(residuals)}
+    residuals, freedom = residuals / error, x.size - len(start)
+    chi_square = float(residuals @ residuals / freedom) if freedom else math.nan
+    return values, covariance * np.fmax(chi_square, 1.0), {"chi_square": chi_square}
+
+
+def root_mean_square(residuals: Array) -> float:
+    """Return the root mean square of residuals."""
+    return float(np.sqrt(np.mean(residuals**2)))
 
 
 def fit_arctanh(source: xr.Dataset) -> Fit:
@@ -129,9 +223,8 @@ def fit_border_power_law(
     if size < _LEAST_RODS:
         raise ValueError(f"the fit needs the widths of at least {_LEAST_RODS} particles")
     width = source.velocity_width.values
-    weight = np.ones(size)
-    if weighted:
-        weight = source.get("velocity_width_error", source.velocity_width).values
+    error = source.get("velocity_width_error", source.velocity_width).values
+    weight = error if weighted else np.ones(size)
     if not (np.min([width, weight]) > 0 and np.isfinite([width, weight]).all()):
         raise ValueError("the fit needs positive widths and errors")
     i = np.arange(1.0, size + 1)
@@ -153,9 +246,16 @@ def _best_fit(
     """Return a, nu and c, their errors, and the correlation of the last two."""
     number = 3 if shifted else 2
     bounds = ([0.0, _STEEPEST, -float(i.size)][:number], [np.inf, 0.0, 1.0][:number])
-    same: Any = {"sigma": weight, "absolute_sigma": True, "bounds": bounds, "max_nfev": 2000}
-    same["jac"] = lambda *point: _slopes_of_powers(*point)[:, :number]
-    same |= {"ftol": 1e-12, "xtol": 1e-10, "gtol": 1e-12}
+    same: Any = {
+        "sigma": weight,
+        "absolute_sigma": True,
+        "bounds": bounds,
+        "max_nfev": 2000,
+        "ftol": 1e-12,
+        "xtol": 1e-10,
+        "gtol": 1e-12,
+        "jac": lambda *point: _slopes_of_powers(*point)[:, :number],
+    }
     best: tuple[float, Array, Array] | None = None
     for nu, c in _STARTS if shifted else _STARTS[:1]:
         # The best scale for these two.
@@ -188,8 +288,7 @@ def _inside(values: Array, bounds: tuple[list[float], list[float]]) -> bool:
 def _sum_of_powers(
     i: Array, scale: float, exponent: float, origin: float = 0.0, *, size: int
 ) -> Array:
-    laws = (i - origin) ** exponent + (size + 1 - origin - i) ** exponent
-    return np.asarray(scale * laws)
+    return np.asarray(scale * ((i - origin) ** exponent + (size + 1 - origin - i) ** exponent))
 
 
 def _slopes_of_powers(i: Array, scale: float, exponent: float, origin: float = 0.0) -> Array:

@@ -1,19 +1,13 @@
-r"""The distribution of each rod's place in the reduced coordinate, from a density of points.
+r"""The distribution p_i(y) of each rod's place in the reduced coordinate, and the density of all.
 
-Theories compute the density n(y) of *points*, of which N(y) lie below y. Read as a fluid, rod i is
-at the place where N = i - 1/2. A real rod is found around it, and p_i(y) says where.
-
-**Without a gap** the points are exchangeable. Of L points drawn from n/L the i-th in order has
+**Without a gap** the points are exchangeable. Of L independent points with the density n(y), of
+which N(y) lie below y, the i-th in order has
 
     p_i(y) = n(y)/L Beta(N(y)/L; i, L + 1 - i).
 
 This is exact at e = 1, in the steady state and, because points that exchange their names stay
-independent, at any time after an independent start.
-
-**With a gap** at e = 1 and rest the Gibbs measure has the exact p_i of the elastic chain, and the
-force balance its N(y). Together they say at which labels N rod i is found. A theory takes these
-labels, of the elastic chain with its own mean temperature m <W^2>, to the places that have them in
-its own N(y). This is exact at e = 1 at rest and after a shift or a stretch from there.
+independent, at any time after an independent start. **With a gap** at e = 1 and rest it follows
+from the Gibbs measure.
 
 Every distribution is a table of some places. Between them its integral is a cubic.
 """
@@ -24,13 +18,11 @@ from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline, CubicSpline
+from scipy.interpolate import CubicSpline
 from scipy.special import betainc, betaincinv, betaln, log_ndtr, ndtr, ndtri
 
 from crazybilliards.kinetic.exact.recursion import recursion_of, weights
-from crazybilliards.kinetic.statics.label_closure import stationary
-from crazybilliards.model import Chain
-from crazybilliards.model.arrays import Array
+from crazybilliards.model import Array, Chain
 
 # More rods are not resolved: neither by a grid of positions nor, with a gap, within seconds.
 MOST_RODS, MOST_RODS_WITH_GAP = 10_000, 3000
@@ -39,7 +31,6 @@ _TOGETHER = 500  # rods that are summed at once, for the memory
 _RESOLVED = 0.8  # spacings of x in the width of a rod, from which on a sum over x is its integral
 _NODES = 193  # of a table
 _TAIL = 1e-13  # probability beyond either end of a table
-_FARTHEST = 1e-8  # shares of the points closer to an end than this are numerical noise
 
 
 class RodPlaces(NamedTuple):
@@ -56,77 +47,21 @@ class RodPlaces(NamedTuple):
 
     def width(self) -> Array:
         """Return the standard deviation of each rod's place."""
-        apart = self.places - self.mean()[:, None]
-        return np.asarray(np.sqrt(self.mean(apart**2)))
+        return np.asarray(np.sqrt(self.mean((self.places - self.mean()[:, None]) ** 2)))
 
     def moved(self, mean: Array, width: Array) -> Self:
         """Return the rods moved and stretched to other means and standard deviations."""
         factor = (width / self.width())[:, None]
-        places = mean[:, None] + factor * (self.places - self.mean()[:, None])
-        return self._replace(places=places, density=self.density / factor)
+        return self.mapped(mean[:, None] + factor * (self.places - self.mean()[:, None]), factor)
 
-
-class LabelledPoints:
-    """A theory's points: y as a function of the normal score z of their label, N = L Phi(z)."""
-
-    def __init__(self, size: int, y: Array, density: Array, below: Array, beyond: Array) -> None:
-        """Read the points' density n and the numbers below and beyond each ascending y."""
-        share = np.minimum(below, beyond) / size
-        occupied = share > _FARTHEST
-        y, density = y[occupied], density[occupied]
-        # The smaller of the two numbers is more accurate.
-        score = np.where(below < beyond, 1, -1)[occupied] * ndtri(share[occupied])
-        # From the middle outwards, so that both sides of a symmetric state are the same.
-        middle = np.abs(score).argmin()
-        new = _farther_out(score, middle) & _farther_out(y, middle)
-        y, score, density = y[new], score[new], density[new]
-        secant = np.diff(y) / np.diff(score)
-        # Three times the smaller secant at most keeps the cubic monotonic.
-        most = 3 * np.minimum(np.append(secant, np.inf), np.append(np.inf, secant))
-        with np.errstate(divide="ignore"):
-            slope = np.minimum(size * _normal(score) / density, most)
-        self._curve = CubicHermiteSpline(score, y, slope)
-        self.ends = score[0], score[-1]
-
-    def at(self, score: Array) -> tuple[Array, Array]:
-        """Return y and dy/dz at scores, continued linearly; of a Gaussian, y is linear in z."""
-        inside = np.clip(score, *self.ends)
-        slope = self._curve(inside, 1)
-        return self._curve(inside) + slope * (score - inside), slope
-
-
-def _farther_out(values: Array, middle: np.intp) -> NDArray[np.bool_]:
-    """Return which values are farther out than all those between them and the middle one."""
-    up, down = (
-        side[1:] > np.maximum.accumulate(side)[:-1]
-        for side in (values[middle:], -values[middle::-1])
-    )
-    return np.concatenate([down[::-1], [True], up])
+    def mapped(self, places: Array, slope: Array) -> Self:
+        """Return the rods with other places, of this slope over their own."""
+        return self._replace(places=places, density=self.density / slope)
 
 
 def are_resolved(chain: Chain) -> bool:
     """Return whether the rods of a chain are told apart."""
     return chain.size <= (MOST_RODS if chain.exchangeable else MOST_RODS_WITH_GAP)
-
-
-def rods_of(chain: Chain, points: LabelledPoints, temperature: float) -> RodPlaces:
-    """Return the rods of a theory's points; ``temperature``: the mean of m W^2 over the rods."""
-    if chain.exchangeable:
-        return _mapped(exchangeable(chain.size), *points.at(exchangeable(chain.size).places))
-    cold = at_temperature(chain, temperature)
-    rest, score, slope_at_rest = elastic_rods(cold), *_scores_at_rest(cold)
-    # Beyond the last points, rods are moved as these are.
-    inside = np.clip(score, *points.ends)
-    places, slope = points.at(inside)
-    at_rest = rest.places.copy()
-    for beyond, end in zip((score < inside, score > inside), points.ends, strict=True):
-        at_rest[beyond] = stationary(cold).unit * stationary(cold).at(ndtr(end) - 0.5)
-    stretch = np.where(inside == score, slope / slope_at_rest, 1.0)
-    return _mapped(rest, rest.places + (places - at_rest), stretch)
-
-
-def _mapped(rods: RodPlaces, places: Array, slope: Array) -> RodPlaces:
-    return rods._replace(places=places, density=rods.density / slope)
 
 
 def at_temperature(chain: Chain, temperature: float) -> Chain:
@@ -149,7 +84,7 @@ def beta_scores(first: Array, second: Array) -> RodPlaces:
     score: Array = low[:, None] + np.linspace(0.0, 1.0, _NODES) * (-low[::-1] - low)[:, None]
     first, second = first[:, None], second[:, None]
     log_share = (first - 1) * log_ndtr(score) + (second - 1) * log_ndtr(-score)
-    density = np.exp(log_share - betaln(first, second)) * _normal(score)
+    density = np.exp(log_share - betaln(first, second)) * normal(score)
     share = density / density.sum(axis=1, keepdims=True)
     return RodPlaces(score, np.asarray(betainc(first, second, ndtr(score))), density, share)
 
@@ -158,7 +93,13 @@ def beta_scores(first: Array, second: Array) -> RodPlaces:
 def elastic_rods(chain: Chain) -> RodPlaces:
     """Return the exact rods of the elastic chain at rest."""
     if chain.lattice_gap == 0 and not chain.box:
-        return _without_gap(chain)
+        from scipy.stats import gennorm  # its import takes half a second, and few calls need it
+
+        law, n, s = exchangeable(chain.size), chain.potential_exponent, chain.thermal_length
+        free = gennorm(n, scale=n ** (1 / n))
+        # The lower tail is the accurate one.
+        u = -np.sign(law.places) * free.ppf(ndtr(-np.abs(law.places)))
+        return law.mapped(s * u, s * normal(law.places) / free.pdf(u))
     recursion, L = recursion_of(chain), chain.size
     rods = RodPlaces(*np.empty((4, L, _NODES)))
     for i in range(L):
@@ -176,28 +117,8 @@ def elastic_rods(chain: Chain) -> RodPlaces:
     return rods
 
 
-def _without_gap(chain: Chain) -> RodPlaces:
-    from scipy.stats import gennorm  # its import takes half a second, and few calls need it
-
-    law, n = exchangeable(chain.size), chain.potential_exponent
-    free = gennorm(n, scale=n ** (1 / n))
-    # The lower tail is the accurate one.
-    u = -np.sign(law.places) * free.ppf(ndtr(-np.abs(law.places)))
-    s = chain.thermal_length
-    return _mapped(law, s * u, s * _normal(law.places) / free.pdf(u))
-
-
-@lru_cache(maxsize=4)
-def _scores_at_rest(chain: Chain) -> tuple[Array, Array]:
-    """Return z of the places of the exact rods in the fluid at rest, and dy/dz there."""
-    s = stationary(chain).unit
-    label, log_density = stationary(chain).profile(elastic_rods(chain).places / s)
-    beyond = np.maximum(0.5 - np.abs(label), np.finfo(float).tiny)
-    score = -np.sign(label) * ndtri(beyond)
-    return score, s * _normal(score) * np.exp(-np.maximum(log_density, -600.0))
-
-
-def _normal(score: Array) -> Array:
+def normal(score: Array) -> Array:
+    """Return the standard normal density."""
     return np.asarray(np.exp(-(score**2) / 2) / math.sqrt(2 * math.pi))
 
 

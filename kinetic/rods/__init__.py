@@ -1,1 +1,0 @@
-"""From the density of points, which every theory has, to the rods."""
