@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import laplace, norm
 
 from crazybilliards.comparison import fit_arctanh, fit_border_power_law
-from crazybilliards.comparison.fits import profile as fitting
+from crazybilliards.comparison import fits as fitting
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
 from crazybilliards.reproduction.fits import (

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from crazybilliards.comparison.fits import profile
+from crazybilliards.comparison import fits
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.comparison.sweeps.case import JOBS
 from crazybilliards.model import DivergedError, chain_of
@@ -56,7 +56,7 @@ def short_run(case):
 @pytest.mark.filterwarnings("ignore:.* chain diverged")
 @pytest.mark.parametrize("study", FIGURES, ids=lambda study: study.name)
 def test_it_is_drawn_and_every_claim_gets_a_verdict(study, monkeypatch):
-    monkeypatch.setattr(profile, "_STARTS", profile._STARTS[:1])  # many fits, the best or not
+    monkeypatch.setattr(fits, "_STARTS", fits._STARTS[:1])  # many fits, the best or not
     results = {name: short_run(case) for name, case in study.cases("quick").items()}
     for claim in study.claims(results) if study.claims else ():
         assert claim.verdict in get_args(Verdict)
