@@ -6,7 +6,7 @@ Prints kinetic/measured/steady_state.csv, from which the theory reads the errors
 docs/tables/stationary_held_out.csv: chains drawn at random before any chain was compared with the
 theory. Every error is the largest of all rods plus two of its standard errors. Simulations have a
 time step of little error; they are kept in FOLDER, so that another theory needs no other ones. On
-two cores the first table takes about twenty minutes, and the second one five.
+two cores the first table takes about half an hour, and the second one five minutes.
 """
 
 from __future__ import annotations
