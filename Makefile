@@ -134,12 +134,23 @@ browser:
 	    apt-get install -y -qq --no-install-recommends chromium chromium-driver >/dev/null; } || \
 	  echo "install chromium and chromedriver to test the page of crazybilliards explore"
 
+# The examples of the pages. They are executed as the lessons are, and Sphinx takes the outputs from
+# the cache. It would start a kernel for each page.
+build/pages/executed: notebooks/execute.py $(wildcard docs/*.md docs/howto/*.md) | $(VENV)/installed-docs $(VENV)/installed-render
+	rm -rf build/pages
+	mkdir -p build/pages/cache
+	cp $$(grep -l '^```{code-cell}' docs/*.md docs/howto/*.md) build/pages
+	$(BIN)/jupytext --quiet --to ipynb build/pages/*.md
+	TQDM_DISABLE=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python notebooks/execute.py build/pages/*.ipynb
+	$(BIN)/jcache cache --cache-path build/pages/cache add build/pages/*.ipynb
+	touch $@
+
 # Warnings are errors, for example links that lead nowhere and examples that fail.
-docs: $(VENV)/installed-docs build/notebooks/executed
+docs: $(VENV)/installed-docs build/notebooks/executed build/pages/executed
 	TQDM_DISABLE=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m sphinx -W --keep-going -b html docs build/docs
 	@echo "open build/docs/index.html"
 
-linkcheck: $(VENV)/installed-docs build/notebooks/executed
+linkcheck: $(VENV)/installed-docs build/notebooks/executed build/pages/executed
 	$(BIN)/python -m sphinx -b linkcheck docs build/linkcheck
 
 # The other scripts of that folder need more than these packages.

@@ -54,9 +54,10 @@ myst_dmath_double_inline = True
 # Equations are numbered within the numbered pages, so that a number has one meaning everywhere.
 numfig = True
 
-# The notebooks come with the outputs that `make notebooks` has given them. The examples in the
-# how-to pages have none and are executed; what fails fails the build.
-nb_execution_mode = "force"
+# The notebooks come with the outputs that `make notebooks` has given them. Those of the examples in
+# the pages lie in a cache. An example that is not there is executed; what fails fails the build.
+nb_execution_mode = "cache"
+nb_execution_cache_path = str(ROOT / "build" / "pages" / "cache")
 nb_execution_excludepatterns = ["notebooks/*"]
 nb_execution_timeout = 300
 nb_execution_raise_on_error = True

@@ -1,9 +1,9 @@
-"""Execute copies of the notebooks one after the other in one kernel, and keep their outputs.
+"""Execute copies of notebooks one after the other in one kernel, and keep their outputs.
 
 python notebooks/execute.py build/notebooks/*.ipynb
 
 To start a kernel and to import all that a lesson needs takes longer than many lessons. Names of one
-lesson are not known in the next.
+notebook are not known in the next.
 """
 
 import sys
@@ -21,12 +21,15 @@ def execute(paths: list[Path]) -> None:
         nbformat.v4.new_notebook(),
         timeout=_LIMIT,
         kernel_name="python3",
+        record_timing=False,  # outputs are found again by all that stands in their cells
         resources={"metadata": {"path": str(paths[0].parent)}},
     )
     with client.setup_kernel():
+        kernel = client.wait_for_reply(client.kc.kernel_info())
         for path in paths:
             begun = time.monotonic()
             client.nb = nbformat.read(path, as_version=4)
+            client.nb.metadata.language_info = kernel["content"]["language_info"]
             client.reset_execution_trackers()
             code = [i for i, cell in enumerate(client.nb.cells) if cell.cell_type == "code"]
             for count, i in enumerate(code, start=1):
