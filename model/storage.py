@@ -16,9 +16,11 @@ import secrets
 import sys
 from contextlib import nullcontext
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 import h5py
+import netCDF4
 import numpy as np
 import xarray as xr
 
@@ -29,6 +31,7 @@ from crazybilliards.model.warn import warn_if_diverged
 _CLASSIC, _NETCDF_4 = b"CDF", b"\x89HDF"  # the first bytes of a file
 _MARK = b"\ncrazybilliards-1 sha256 "
 _TRAILER = len(_MARK) + 64 + 1  # hexadecimal digest and a newline
+_LIBRARY = Lock()  # two threads that call the NetCDF library at the same time end the process
 _MOST_COMPRESSED = 2000  # times; more than the 1032 of deflate, as a dimension is an array, too
 
 
@@ -88,20 +91,22 @@ def _load(file: Path, whole: bool = True) -> xr.Dataset | xr.DataTree:
             # Classic NetCDF has no integers beyond 32 bits, which get their 64 back.
             narrow = [name for name, each in old.variables.items() if each.dtype == np.int32]
             return old.assign({name: old.variables[name].astype(np.int64) for name in narrow})
-        attributes = _attributes(content)  # refuses what names other files
-        if not whole:
-            return xr.Dataset(attrs=attributes)
-        with xr.open_datatree(io.BytesIO(content), engine="h5netcdf") as tree:
-            for node in tree.subtree:  # tree.load() leaves out variables with the name of a group
-                node.dataset.load()
+        with _LIBRARY:
+            _require_own_arrays(content)
+            if not whole:
+                with netCDF4.Dataset("attributes", memory=content) as opened:
+                    return xr.Dataset(attrs=opened.__dict__)
+            with xr.open_datatree(content, engine="netcdf4") as tree:
+                for node in tree.subtree:  # tree.load() leaves out variables named like a group
+                    node.dataset.load()
     # The libraries may raise anything for a file with a valid checksum that is not NetCDF.
     except Exception as error:
         raise ValueError(f"{file}: not a result, though sealed: {shown(str(error))}") from error
     return tree if tree.children else tree.to_dataset()
 
 
-def _attributes(content: bytes) -> dict[str, Any]:
-    """Return those of an HDF5 file; a ValueError unless it is a tree of arrays that lie in it."""
+def _require_own_arrays(content: bytes) -> None:
+    """Raise a ValueError unless an HDF5 file is a tree of arrays that lie in it."""
     links: list[tuple[str, object]] = []
     declared = 0
     with h5py.File(io.BytesIO(content)) as file:
@@ -117,15 +122,16 @@ def _attributes(content: bytes) -> dict[str, Any]:
         if declared > _MOST_COMPRESSED * len(content):
             raise ValueError(f"it is too short for the {declared:.3g} bytes of its arrays")
         require_memory("it", declared)
-        return dict(file.attrs)
 
 
 def netcdf(result: xr.Dataset | xr.DataTree) -> bytes:
     """Return a result as the content of a NetCDF-4 file."""
     dask = sys.modules.get("dask")
     # A worker of a dask cluster would ask the scheduler for a lock, which knows none of bytes.
-    with dask.config.set(scheduler="threads") if dask else nullcontext():
-        return bytes(result.to_netcdf(engine="h5netcdf"))
+    with _LIBRARY, dask.config.set(scheduler="threads") if dask else nullcontext():
+        content = bytes(result.to_netcdf(engine="netcdf4"))
+    # HDF5 leaves unused room behind the end, whose address stands in its first block.
+    return content[: int.from_bytes(content[28:36], "little")] if content[8] in (2, 3) else content
 
 
 def write_sealed(path: Path, content: bytes) -> None:

@@ -103,7 +103,7 @@ def test_a_damaged_file_is_refused_or_read_right(kind, flips, files, tmp_path, m
         # No Exception, which would become another error on its way.
         pytest.fail("a library was given the bytes of a damaged file")
 
-    for library in ("h5py.File", "numpy.load", "xarray.open_datatree", "xarray.open_dataset"):
+    for library in ("h5py.File", "netCDF4.Dataset", "numpy.load", "xarray.open_datatree"):
         monkeypatch.setattr(library, unsealed)
     generator = np.random.default_rng(3)
     for position in generator.integers(len(whole) - 1, size=flips):
@@ -142,7 +142,7 @@ def strangers(files, tmp_path_factory):
     run, folder = load(files["result"]), tmp_path_factory.mktemp("strangers")
 
     def netcdf(dataset):
-        return bytes(dataset.to_netcdf(engine="h5netcdf"))
+        return bytes(dataset.to_netcdf(engine="netcdf4"))
 
     contents = {
         "nothing": b"",

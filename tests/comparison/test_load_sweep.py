@@ -1,7 +1,6 @@
 """What a sweep takes as values, and reading it: one dataset with every number about its cases."""
 
 import functools
-import io
 import json
 import numbers
 import operator
@@ -156,4 +155,4 @@ def test_folders_that_hold_no_sweep(tmp_path):
 
 
 def case_result(case):
-    return xr.load_dataset(io.BytesIO(compute(case, case.source)))
+    return xr.load_dataset(compute(case, case.source))

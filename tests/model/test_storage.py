@@ -2,6 +2,7 @@
 
 import os
 import re
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -32,7 +33,7 @@ def test_what_is_saved_comes_back_the_same_and_other_programs_can_read_it(datase
     xr.testing.assert_identical(back, dataset)
     assert chain_of(back) == Chain(size=5, gap=0.5)
     assert back.mean_displacement.attrs["units"] == "R_0"
-    with xr.open_dataset(path, engine="h5netcdf") as plain:
+    with xr.open_dataset(path, engine="netcdf4") as plain:
         xr.testing.assert_equal(plain, dataset)
     named = dataset.rename(mean_displacement="a")  # like a group
     tree = xr.DataTree.from_dict({"a/simulation": dataset, "b": named})
@@ -110,7 +111,7 @@ def test_a_name_may_be_as_long_as_the_disk_allows(letter, dataset, tmp_path):
 
 def test_foreign_files_are_refused(dataset, tmp_path):
     foreign = tmp_path / "foreign.nc"
-    for engine in ("h5netcdf", "scipy"):
+    for engine in ("netcdf4", "scipy"):
         dataset.to_netcdf(foreign, engine=engine)
         with pytest.raises(ValueError, match=r"without the checksum of .*save; xarray.open_data"):
             load(foreign)
@@ -134,3 +135,17 @@ def test_the_package_unpickles_nothing():
     sources = [path for room in rooms for path in (root / room).rglob("*.py")]
     assert len(sources) > 100
     assert not [path for path in sources if wrong.search(path.read_text())]
+
+
+def test_threads_save_and_load_side_by_side_and_files_are_no_longer_than_they_need_be(
+    dataset, tmp_path
+):
+    """The library of NetCDF files ends the process if two threads call it at the same time."""
+
+    def read_and_written(number):
+        path = save(dataset.assign_attrs(number=number), tmp_path / f"{number}.nc")
+        assert load_attributes(path)["number"] == load(path).attrs["number"] == number
+        return path.stat().st_size
+
+    with ThreadPoolExecutor(4) as pool:
+        assert max(pool.map(read_and_written, range(40))) < 20_000
