@@ -129,9 +129,10 @@ def netcdf(result: xr.Dataset | xr.DataTree) -> bytes:
     dask = sys.modules.get("dask")
     # A worker of a dask cluster would ask the scheduler for a lock, which knows none of bytes.
     with _LIBRARY, dask.config.set(scheduler="threads") if dask else nullcontext():
-        content = bytes(result.to_netcdf(engine="netcdf4"))
+        content = result.to_netcdf(engine="netcdf4")
     # HDF5 leaves unused room behind the end, whose address stands in its first block.
-    return content[: int.from_bytes(content[28:36], "little")] if content[8] in (2, 3) else content
+    end = int.from_bytes(content[28:36], "little") if content[8] in (2, 3) else None
+    return bytes(content[:end])
 
 
 def write_sealed(path: Path, content: bytes) -> None:
