@@ -1,7 +1,5 @@
 """The mean of several runs of one chain, with the errors of the mean."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from typing import Any

@@ -11,8 +11,6 @@ On the package's grid (nodes at multiples of h = 2R/n, n odd) the first step is 
 kept in hat weights: the covered fraction of a node's bin is the mean of the n hats around it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Distances between two results, absolute and in units of the error bar."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

@@ -5,8 +5,6 @@ Pictures have one style, are one or two columns of a journal wide, and their pan
 that are written to files are made without pyplot, and without the settings of the reader.
 """
 
-from __future__ import annotations
-
 import string
 from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager

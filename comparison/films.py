@@ -1,7 +1,5 @@
 """Films of rods, of a run or of a chain, and of the densities of a relaxation: mp4, gif or page."""
 
-from __future__ import annotations
-
 import math
 import os
 import tempfile

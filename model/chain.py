@@ -19,8 +19,6 @@ Units: length R, mass M, time t_0. With the defaults a rod has the radius 1 R an
 and a linear spring has the stiffness 1 M/t_0^2.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection
 from dataclasses import dataclass, fields, replace

@@ -6,8 +6,6 @@ library sees the bytes, so a damaged or truncated file can never give a wrong re
 version 0.5 and before are classic NetCDF, which is read, too.
 """
 
-from __future__ import annotations
-
 import errno
 import hashlib
 import io

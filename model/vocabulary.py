@@ -4,8 +4,6 @@ Simulations and theories return an :class:`xarray.Dataset` built by :func:`resul
 them can be compared. A measured ``NAME`` comes with ``NAME_error``, one standard error.
 """
 
-from __future__ import annotations
-
 import json
 import platform
 import re

@@ -10,8 +10,6 @@ quadratic springs, and in a box at most that of a gas without springs. The step 
 lightest rod; the relaxation waits for the heaviest.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

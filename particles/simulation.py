@@ -1,7 +1,5 @@
 """Running the chain: replicas in threads, chunks of snapshots to observers, one result."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from contextlib import nullcontext

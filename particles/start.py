@@ -1,7 +1,5 @@
 """The start of a simulation: at the anchors, or from given positions and velocities."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable
 from typing import Any

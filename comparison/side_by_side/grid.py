@@ -1,7 +1,5 @@
 """One chain at several values of a parameter: simulated, with its theories beside it."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from contextlib import ExitStack

@@ -4,8 +4,6 @@ The fluids are the paper's two equations with a constant W^2, for restitution 1,
 equations for temperature and heat flux.
 """
 
-from __future__ import annotations
-
 from typing import Any, Literal, get_args
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Sweeps: a grid over any parameters, described by a TOML file, read back as one Dataset."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import math

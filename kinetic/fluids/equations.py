@@ -46,8 +46,6 @@ Two independent solvers step the equations with py-pde: on labels (:mod:`.label_
 and on a grid of positions (:mod:`.eulerian_frame`), which is for restitution 1 and has q = 0.
 """
 
-from __future__ import annotations
-
 from typing import Any, Literal, get_args
 
 import numpy as np

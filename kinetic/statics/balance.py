@@ -36,8 +36,6 @@ its profile, or in the box. An arctanh ends where the density is small but not z
 **Two masses** have the same density at the same temperature T = m W^2, with their mean mass m.
 """
 
-from __future__ import annotations
-
 import xarray as xr
 
 from crazybilliards.kinetic.accuracy import Accuracy, warn_if_unmeasured
