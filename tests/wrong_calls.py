@@ -1,6 +1,6 @@
 r"""Wrong calls, each with what its message says; ``...`` stands for anything between.
 
-One line for each kind of message. ``tests/test_messages.py`` says what the names stand for, and
+One line for each kind of message. ``tests/whole/test_messages.py`` says what the names stand for, and
 makes the calls.
 """
 

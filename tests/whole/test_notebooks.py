@@ -12,7 +12,7 @@ import pytest
 from outputs import HIDDEN, fingerprint
 from without_outputs import write_copies
 
-FOLDER = Path(__file__).parents[1] / "notebooks"
+FOLDER = Path(__file__).parents[2] / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 LONGEST_CELL = 15
 MOST_WORDS = 1750

@@ -12,7 +12,7 @@ from crazybilliards.kinetic.gas.descriptions import VARIANCES
 from crazybilliards.model import Chain
 from studies import critical_size, elastic_lattice, neighbours
 
-TABLES = Path(__file__).parents[1] / "docs" / "tables"
+TABLES = Path(__file__).parents[2] / "docs" / "tables"
 
 
 def test_tables_have_the_columns_of_those_in_the_documentation():
