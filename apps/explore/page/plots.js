@@ -47,13 +47,14 @@ const ChainPlots = (() => {
       const { axes = {}, hidden } = predicted ?? {}, range = (own, wanted) => (hidden && wanted) || joined(own, wanted);
       Object.assign(this, fit(canvas), { colour, hidden, xRange: range(x, axes.x), yRange: range(y, axes.y), seen: {} });
       this.drawn = axes.x ?? this.xRange; // where a prediction lies
+      this.above = this.width < 420 ? ABOVE + 14 : ABOVE; // names of curves need two lines on a phone
       this.pen.clearRect(0, 0, this.width, this.height);
       this.pen.font = `12px ${colour.sans}`;
       const xs = ticks(...this.xRange, this.width / 70, apart), ys = ticks(...this.yRange, 4, powers && 1);
       this.frame(xs, ys, powers ? powerOfTen : number);
       this.words(xTitle, (LEFT + this.width - RIGHT) / 2, this.height - 5, "center");
       this.words(yTitle, 2, 12, "left");
-      this.legendEnd = this.width - 2;
+      Object.assign(this, { legendEnd: this.width - 2, base: 12, free: 10 + this.pen.measureText(yTitle).width });
       canvas.plot = this;
     }
 
@@ -64,14 +65,14 @@ const ChainPlots = (() => {
 
     up(y) {
       const [from, to] = this.yRange;
-      return ABOVE + (this.height - ABOVE - BELOW) * (1 - (y - from) / (to - from));
+      return this.above + (this.height - this.above - BELOW) * (1 - (y - from) / (to - from));
     }
 
     /* The share of the way across a prediction, and the value, of a place on the canvas. */
     at(x, y) {
       const [from, to] = this.xRange, [low, high] = this.yRange, [left, right] = this.drawn;
       const place = from + ((x - LEFT) / (this.width - LEFT - RIGHT)) * (to - from);
-      const value = low + (high - low) * (1 - (y - ABOVE) / (this.height - ABOVE - BELOW));
+      const value = low + (high - low) * (1 - (y - this.above) / (this.height - this.above - BELOW));
       return [(place - left) / (right - left), Math.min(Math.max(value, low), high)];
     }
 
@@ -111,18 +112,21 @@ const ChainPlots = (() => {
       if (this.hidden) return;
       pen.save();
       pen.beginPath();
-      pen.rect(LEFT, ABOVE - 3, this.width - LEFT - RIGHT + 3, this.height - ABOVE - BELOW + 4);
+      pen.rect(LEFT, this.above - 3, this.width - LEFT - RIGHT + 3, this.height - this.above - BELOW + 4);
       pen.clip();
       draw();
       pen.restore();
     }
 
-    /* Name what `sample(x, y)` draws, from the right to the left. */
+    /* Name what `sample(x, y)` draws, from the right to the left, and on the next line beside a long title. */
     name(text, sample) {
       if (this.hidden) return;
       const width = this.pen.measureText(text).width;
-      this.words(text, this.legendEnd, 12, "right");
-      sample(this.legendEnd - width - 16, 8);
+      if (this.legendEnd - width - 16 < this.free) {
+        Object.assign(this, { legendEnd: this.width - 2, base: this.base + 14, free: LEFT });
+      }
+      this.words(text, this.legendEnd, this.base, "right");
+      sample(this.legendEnd - width - 16, this.base - 4);
       this.legendEnd -= width + 32;
     }
 
