@@ -1,7 +1,5 @@
 """The paper's fits along the chain, with uncertainties, and what other fits share with them."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Callable, Mapping
@@ -82,13 +80,13 @@ def least_squares(
     points: tuple[Array, Array],
     start: tuple[float, ...],
     error: Array | None = None,
-) -> tuple[Array, Array, dict[str, Any]]:
-    """Fit a curve to points (x, y); return its parameters, their covariance, and the quality.
+) -> tuple[list[float], list[float], dict[str, Any]]:
+    """Fit a curve to points (x, y); return its parameters, their errors, and the quality.
 
-    Without standard errors of y the covariance follows from the scatter, and the quality is the
-    ``misfit``. With ``error`` it is ``chi_square``, the sum of the squared residuals in standard
-    errors over the degrees of freedom (nan if there are none), and where this is above 1, the
-    covariance is larger by it. ``what`` names the curve in the error of points that do not fit.
+    Without standard errors of y they follow from the scatter, and the quality is the ``misfit``.
+    With ``error`` it is ``chi_square``, the sum of the squared residuals in standard errors over
+    the degrees of freedom (nan if there are none), and where this is above 1, they are larger by
+    its square root. ``what`` names the curve in the error of points that do not fit.
     """
     x, y = points
     try:
@@ -103,11 +101,12 @@ def least_squares(
         raise ValueError(f"no {what} fits: {problem}") from problem
     if not all(np.isfinite(each).all() for each in (values, covariance, residuals)):
         raise ValueError(f"no {what} fits: the search for its parameters runs away")
-    if error is None:
-        return values, covariance, {"misfit": root_mean_square(residuals)}
-    residuals, freedom = residuals / error, x.size - len(start)
-    chi_square = float(residuals @ residuals / freedom) if freedom else math.nan
-    return values, covariance * np.fmax(chi_square, 1.0), {"chi_square": chi_square}
+    quality = {"misfit": root_mean_square(residuals)}
+    if error is not None:
+        residuals, freedom = residuals / error, x.size - len(start)
+        chi_square = float(residuals @ residuals / freedom) if freedom else math.nan
+        covariance, quality = covariance * np.fmax(chi_square, 1.0), {"chi_square": chi_square}
+    return values.tolist(), np.sqrt(np.diag(covariance)).tolist(), quality
 
 
 def root_mean_square(residuals: Array) -> float:
@@ -157,15 +156,14 @@ def fit_arctanh(source: xr.Dataset) -> Fit:
     def model(position: Array, scale: float, q: float) -> Array:
         return scale * np.arctanh(position / (edge * (1 + np.exp(q))))
 
-    start = (outward / float(x @ x) * edge, -2.0)
-    (scale, q), covariance, quality = least_squares("arctanh", model, (x, displacement), start)
-    steepness = float(1 / (edge * (1 + math.exp(q))))
-    scale_error, q_error = np.sqrt(np.diag(covariance))
-    steepness_error = float(steepness * math.exp(q) / (1 + math.exp(q)) * q_error)
-    parameters = {"scale": float(scale), "steepness": steepness}
-    errors = {"scale": float(scale_error), "steepness": steepness_error}
-    quality["support"] = (-1 / steepness, 1 / steepness)
-    return Fit(parameters, errors, _arctanh, quality)
+    (scale, q), (scale_error, q_error), quality = least_squares(
+        "arctanh", model, (x, displacement), (outward / float(x @ x) * edge, -2.0)
+    )
+    beyond = 1 + math.exp(q)  # the half support over the edge
+    steepness = 1 / (edge * beyond)
+    parameters = {"scale": scale, "steepness": steepness}
+    errors = {"scale": scale_error, "steepness": steepness * math.exp(q) / beyond * q_error}
+    return Fit(parameters, errors, _arctanh, quality | {"support": (-1 / steepness, 1 / steepness)})
 
 
 def _arctanh(x: Array, scale: float, steepness: float) -> Array:
@@ -245,31 +243,39 @@ def _best_fit(
 ) -> tuple[Array, Array, float]:
     """Return a, nu and c, their errors, and the correlation of the last two."""
     number = 3 if shifted else 2
-    bounds = ([0.0, _STEEPEST, -float(i.size)][:number], [np.inf, 0.0, 1.0][:number])
-    same: Any = {
-        "sigma": weight,
-        "absolute_sigma": True,
-        "bounds": bounds,
-        "max_nfev": 2000,
-        "ftol": 1e-12,
-        "xtol": 1e-10,
-        "gtol": 1e-12,
-        "jac": lambda *point: _slopes_of_powers(*point)[:, :number],
-    }
+    low, high = np.array([[0.0, _STEEPEST, -i.size], [np.inf, 0.0, 1.0]])[:, :number]
     best: tuple[float, Array, Array] | None = None
     for nu, c in _STARTS if shifted else _STARTS[:1]:
         # The best scale for these two.
         unscaled = curve(i, 1.0, nu, c) / weight
         scale = float(unscaled @ (width / weight) / (unscaled @ unscaled))
         try:
-            how: Any = {"p0": (scale, nu, c)[:number], "x_scale": (scale, 0.1, 1.0)[:number]}
-            values, covariance = curve_fit(curve, i, width, **how, **same)
+            values, covariance = curve_fit(
+                curve,
+                i,
+                width,
+                p0=(scale, nu, c)[:number],
+                sigma=weight,
+                absolute_sigma=True,
+                bounds=(low, high),
+                jac=lambda *point: _slopes_of_powers(*point)[:, :number],
+                x_scale=(scale, 0.1, 1.0)[:number],
+                max_nfev=2000,
+                ftol=1e-12,
+                xtol=1e-10,
+                gtol=1e-12,
+            )
         except RuntimeError:
             continue  # no fit from this start; another may succeed
         cost = float(np.sum(((curve(i, *values) - width) / weight) ** 2))
         if best is None or cost < best[0]:
             best = cost, values, covariance
-    if best is None or not _inside(best[1], bounds) or not np.isfinite(best[2]).all():
+    # Nu and c are away from their bounds if there is such a law.
+    if (
+        best is None
+        or not ((low + 1e-3 < best[1]) & (best[1] < high - 1e-3))[1:].all()
+        or not np.isfinite(best[2]).all()
+    ):
         raise ValueError("no power law fits: the widths do not fall like one from the borders")
     cost, values, covariance = best
     one = np.sqrt(np.diag(covariance))  # errors for weights of one standard error each
@@ -277,12 +283,6 @@ def _best_fit(
     errors = one * np.sqrt(cost / (width.size - number))
     rest = np.zeros(3 - number)
     return np.append(values, rest), np.append(errors, rest), correlation
-
-
-def _inside(values: Array, bounds: tuple[list[float], list[float]]) -> bool:
-    """Return whether nu and c are away from their bounds by more than a thousandth."""
-    triples = list(zip(values, *bounds, strict=True))[1:]
-    return all(low + 1e-3 < value < high - 1e-3 for value, low, high in triples)
 
 
 def _sum_of_powers(

@@ -28,16 +28,19 @@ def fit_singularity(time: ArrayLike, energy: ArrayLike) -> Fit:
         return np.asarray(intercept - exponent * np.log((last - t) / span + np.exp(q)))
 
     start = (float(log_E[0]), 3.0, -2.0)
-    values, covariance, quality = least_squares("finite-time singularity", model, (t, log_E), start)
-    intercept, exponent, q = map(float, values)
+    (intercept, exponent, q), (_, exponent_error, q_error), quality = least_squares(
+        "finite-time singularity", model, (t, log_E), start
+    )
     log_scale = intercept + exponent * float(np.log(span))
     if not (-50 < q < 5 and exponent > 0 and abs(log_scale) < 700):  # exp overflows beyond
         raise ValueError("no finite-time singularity fits: its time runs away")
-    scale, left = float(np.exp(log_scale)), float(np.exp(q))
-    _, exponent_error, q_error = map(float, np.sqrt(np.diag(covariance)))
-    parameters = {"scale": scale, "time": last + span * left, "exponent": exponent}
-    errors = {"time": span * (left * q_error), "exponent": exponent_error}
-    return Fit(parameters, errors, _singularity, quality)
+    left = float(np.exp(q))
+    return Fit(
+        {"scale": float(np.exp(log_scale)), "time": last + span * left, "exponent": exponent},
+        {"time": span * (left * q_error), "exponent": exponent_error},
+        _singularity,
+        quality,
+    )
 
 
 def _singularity(t: Array, scale: float, time: float, exponent: float) -> Array:
@@ -54,9 +57,12 @@ def fit_growth(time: ArrayLike, energy: ArrayLike) -> Fit:
     if np.ptp(t) == 0:
         raise ValueError("the fit needs times that differ, and these are identical")
     line = linregress(t, log_energy)
-    misfit = root_mean_square(log_energy - line.intercept - line.slope * t)
-    parameters = {"scale": float(np.exp(line.intercept)), "rate": float(line.slope)}
-    return Fit(parameters, {"rate": float(line.stderr)}, _growth, {"misfit": misfit})
+    return Fit(
+        {"scale": float(np.exp(line.intercept)), "rate": float(line.slope)},
+        {"rate": float(line.stderr)},
+        _growth,
+        {"misfit": root_mean_square(log_energy - line.intercept - line.slope * t)},
+    )
 
 
 def _growth(t: Array, scale: float, rate: float) -> Array:
@@ -82,14 +88,20 @@ def fit_scaling(x: ArrayLike, y: ArrayLike, error: ArrayLike) -> Fit:
     x, y, error = check_points(x=x, y=y, error=error)
     if x.size < 2 or np.min([x, y, error]) <= 0:
         raise ValueError("a power law needs at least two points, positive, with positive errors")
-
-    points = np.log(x), np.log(y)
-    (intercept, slope), covariance, quality = least_squares(
-        "power law", lambda log_x, a, b: a + b * log_x, points, (0.0, 0.0), error / y
+    (intercept, slope), (intercept_error, slope_error), quality = least_squares(
+        "power law",
+        lambda log_x, a, b: a + b * log_x,
+        (np.log(x), np.log(y)),
+        (0.0, 0.0),
+        error / y,
     )
-    scale, errors = float(np.exp(intercept)), np.sqrt(np.diag(covariance))
-    of_errors = {"scale": scale * float(errors[0]), "exponent": float(errors[1])}
-    return Fit({"scale": scale, "exponent": float(slope)}, of_errors, _power_law, quality)
+    scale = float(np.exp(intercept))
+    return Fit(
+        {"scale": scale, "exponent": slope},
+        {"scale": scale * intercept_error, "exponent": slope_error},
+        _power_law,
+        quality,
+    )
 
 
 def _power_law(x: Array, scale: float, exponent: float) -> Array:
@@ -109,12 +121,12 @@ def fit_exponential(restitution: ArrayLike, y: ArrayLike, error: ArrayLike) -> F
         raise ValueError("an exponential with offset needs positive errors")
     lowest = float(y[e.argmin()])
     start = (float(y[e.argmax()]) - lowest, 5.0, lowest)
-    values, covariance, quality = least_squares("exponential", _saturating, (e, y), start, error)
-    parameters, errors = (
-        dict(zip(("amplitude", "rate", "offset"), map(float, numbers), strict=True))
-        for numbers in (values, np.sqrt(np.diag(covariance)))
+    values, errors, quality = least_squares("exponential", _saturating, (e, y), start, error)
+    parameters, of_errors = (
+        dict(zip(("amplitude", "rate", "offset"), numbers, strict=True))
+        for numbers in (values, errors)
     )
-    return Fit(parameters, errors, _saturating, quality)
+    return Fit(parameters, of_errors, _saturating, quality)
 
 
 def _saturating(e: Array, amplitude: float, rate: float, offset: float) -> Array:
@@ -147,10 +159,17 @@ def fit_avalanches(count: ArrayLike, *, smallest: int = 1, largest: int | None =
     p = curve(sizes, exponent)
     # Fisher's information of one avalanche is the variance of ln N.
     information = float(p @ logs**2 - (p @ logs) ** 2)
-    distance = float(np.abs(np.cumsum(counts) / total - np.cumsum(p)).max())
-    quality = {"smallest": smallest, "largest": int(sizes[-1]), "count": int(total)}
-    errors = {"exponent": 1 / float(np.sqrt(total * information))}
-    return Fit({"exponent": exponent}, errors, curve, quality | {"distance": distance})
+    return Fit(
+        {"exponent": exponent},
+        {"exponent": 1 / float(np.sqrt(total * information))},
+        curve,
+        {
+            "smallest": smallest,
+            "largest": int(sizes[-1]),
+            "count": int(total),
+            "distance": float(np.abs(np.cumsum(counts) / total - np.cumsum(p)).max()),
+        },
+    )
 
 
 def _probability(size: Array, exponent: float, *, sizes: Array) -> Array:
