@@ -8,6 +8,7 @@ that are written to files are made without pyplot, and without the settings of t
 import string
 from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager
+from io import BytesIO
 from itertools import cycle
 from typing import Any, Literal, get_args
 
@@ -33,6 +34,7 @@ DIRECTIONS = LinearSegmentedColormap.from_list("directions", (COLOURS[0], "#F0F0
 SYMBOLS = "osD^v<"
 _DASHES = ("-", "--", ":", "-.")
 ONE_COLUMN, TWO_COLUMNS = 3.4, 7.0  # widths of journals in inches
+_NO_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
 _ALL, _SOME = 60, 30  # symbols of a curve: so many values are all drawn, of more values some
 
 
@@ -103,8 +105,9 @@ def overlay(
         how = {"label": label, **style.get(label, {})}
         if measured:
             spread = None if error is None else error.values
-            look = {"marker": next(symbols)} | how
-            draw_measured(ax, abscissa.values, values.values, spread, **look)
+            draw_measured(
+                ax, abscissa.values, values.values, spread, **{"marker": next(symbols)} | how
+            )
         else:
             ax.plot(abscissa, values, **{"linestyle": next(dashes)} | how)
     ax.set(xlabel=xlabel, ylabel=ylabel)
@@ -158,8 +161,9 @@ def draw_points(
     ax: Axes, x: ArrayLike, values: ArrayLike, errors: ArrayLike, *, number: int, **how: Any
 ) -> None:
     """Draw a few measured numbers as symbols with error bars; the rest as in draw_rods."""
-    look = {"linestyle": "none", "markerfacecolor": "none", **_look(number)}
-    ax.errorbar(x, values, errors, **look | how)
+    ax.errorbar(
+        x, values, errors, **{"linestyle": "none", "markerfacecolor": "none"} | _look(number) | how
+    )
 
 
 def _look(number: int) -> dict[str, Any]:
@@ -172,9 +176,15 @@ def mark_clipped(ax: Axes) -> None:
     for container in [each for each in ax.containers if isinstance(each, ErrorbarContainer)]:
         symbols = container.lines[0]
         x, y = (np.asarray(values, dtype=float) for values in symbols.get_data())
-        look: Any = {"color": symbols.get_color(), "clip_on": False, "zorder": 4}
         for beyond, edge, marker in ((y > high, high, "^"), (y < low, low, "v")):
-            ax.plot(x[beyond], np.full(beyond.sum(), edge), marker, **look)
+            ax.plot(
+                x[beyond],
+                np.full(beyond.sum(), edge),
+                marker,
+                color=symbols.get_color(),
+                clip_on=False,
+                zorder=4,
+            )
 
 
 def along_the_chain(ax: Axes) -> None:
@@ -186,6 +196,13 @@ def house_style() -> AbstractContextManager[None]:
     """Draw in the style of the package alone, and save there as well: some of it acts only then."""
     ffmpeg = {"animation.ffmpeg_path": rcParams["animation.ffmpeg_path"]}  # a place, and no look
     return styles.context(["default", ffmpeg, "crazybilliards.comparison.figures"])
+
+
+def as_file(figure: Figure, kind: str = "png") -> bytes:
+    """Return a picture as a file, which is the same whenever it is drawn."""
+    content = BytesIO()
+    figure.savefig(content, format=kind, metadata=_NO_DATE.get(kind))
+    return content.getvalue()
 
 
 def panels(
@@ -224,5 +241,10 @@ def legend_above(figure: Figure, *axes: Axes, title: str | None = None) -> None:
         return
     longest = max(len(label.replace("$", "").replace("\\", "")) for label in entries)
     columns = max(1, int(figure.get_figwidth() / (0.06 * longest + 0.4)))
-    how: Any = {"loc": "outside upper center", "ncols": min(columns, len(entries)), "title": title}
-    figure.legend(entries.values(), entries.keys(), **how)
+    figure.legend(
+        entries.values(),
+        entries.keys(),
+        loc="outside upper center",
+        ncols=min(columns, len(entries)),
+        title=title,
+    )

@@ -48,15 +48,12 @@ def picture(draw: Callable[..., Figure], *arguments: Any) -> Callable[[Path], No
     """Return a function that draws a picture and writes it to a file, whole or not at all."""
 
     def write(path: Path) -> None:
-        from io import BytesIO
-
-        from crazybilliards.comparison.drawing import house_style
+        from crazybilliards.comparison.drawing import as_file, house_style
         from crazybilliards.model.storage import write_atomically
 
-        content = BytesIO()
         with house_style():
-            draw(*arguments).savefig(content, format="png")
-        write_atomically(path, content.getvalue())
+            content = as_file(draw(*arguments))
+        write_atomically(path, content)
 
     return write
 
@@ -146,8 +143,14 @@ def table(
     from rich import box
     from rich.table import Table
 
-    shown = Table(box=box.SIMPLE, padding=(0, 1, 0, 0), show_edge=False, pad_edge=False)
-    shown.caption, shown.caption_justify = caption, "left"
+    shown = Table(
+        box=box.SIMPLE,
+        padding=(0, 1, 0, 0),
+        show_edge=False,
+        pad_edge=False,
+        caption=caption,
+        caption_justify="left",
+    )
     for name, heading in columns.items():
         words = any(isinstance(row.get(name), str) for row in rows)
         shown.add_column(heading, justify="left" if words else "right", no_wrap=True)

@@ -1,6 +1,5 @@
 """Studies carried out: pictures drawn from stored cases, claims checked, a page about all of it."""
 
-import io
 import platform
 import re
 from collections import Counter
@@ -13,14 +12,12 @@ from pathlib import Path
 from typing import get_args
 
 import xarray as xr
-from matplotlib.figure import Figure
 
-from crazybilliards.comparison.drawing import house_style
+from crazybilliards.comparison.drawing import as_file, house_style
 from crazybilliards.comparison.sweeps import Case
 from crazybilliards.reproduction.claims.study import Quality, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Verdict
 
-_NO_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
 _VERSIONS = ("crazybilliards", "numpy", "numba", "scipy", "scikit-fem", "py-pde", "xarray")
 _INTRODUCTION = (
     "Figures of R. Mani, L. Böttcher, H. J. Herrmann and D. Helbing, "
@@ -60,16 +57,9 @@ def reproduce(
         results = {name: result(case) for name, case in cases.items()}
         with house_style():
             figure = study.draw(results)
-            pictures = {kind: _file(figure, kind) for kind in ("png", *formats)}
+            pictures = {kind: as_file(figure, kind) for kind in ("png", *formats)}
         claims = study.claims(results) if study.claims else []
         yield Reproduction(study, pictures, claims, describe(cases.values()))
-
-
-def _file(figure: Figure, kind: str) -> bytes:
-    """Return a picture as a file, which is the same whenever it is drawn."""
-    content = io.BytesIO()
-    figure.savefig(content, format=kind, metadata=_NO_DATE.get(kind))
-    return content.getvalue()
 
 
 def describe(cases: Iterable[Case]) -> list[str]:
