@@ -95,8 +95,9 @@ def _check(runs: Sequence[xr.Dataset]) -> tuple[list[dict[str, Any]], dict[str, 
         if run.attrs.get("source") != "simulation" or "snapshots" not in provenance:
             raise ValueError(f"combine {_NO_RUN}")
         if not _names(run):
-            wanted = "variables with error bars: nothing was measured in these"
-            raise ValueError(f"runs must have {wanted}")
+            raise ValueError(
+                "runs must have variables with error bars: nothing was measured in these"
+            )
         if "smoothed" in run.attrs:
             raise ValueError("combine takes runs before their densities are smoothed")
         if chain != chain_of(first):
@@ -116,8 +117,10 @@ def _check(runs: Sequence[xr.Dataset]) -> tuple[list[dict[str, Any]], dict[str, 
         free = ("start", "warm-up") if each.get("start") in ends else ()
         for name, value in _decisive(each).items():
             if value != decisive[name] and name not in free:
-                of = f"{shown(decisive[name])} and {shown(value)}"
-                raise ValueError(f"runs must differ in the seed only, not in {name}: got {of}")
+                raise ValueError(
+                    f"runs must differ in the seed only, not in {name}: got "
+                    f"{shown(decisive[name])} and {shown(value)}"
+                )
     return provenances, origin
 
 

@@ -12,7 +12,6 @@ kept in hat weights: the covered fraction of a node's bin is the mean of the n h
 """
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -118,8 +117,9 @@ def _box(source: xr.Dataset) -> xr.Dataset:
     n = round(2 * chain_of(source).radius / float(source.x[1] - source.x[0]))
     convolved = source.drop_vars(set(source.data_vars) - _SMOOTHED - {"outside", "rods"})
     for name in _SMOOTHED & set(convolved.data_vars):
-        values = convolve1d(source[name].values, np.full(n, 1 / n), axis=-1, mode="constant")
-        convolved[name] = convolved[name].copy(data=values)
+        convolved[name] = convolved[name].copy(
+            data=convolve1d(source[name].values, np.full(n, 1 / n), axis=-1, mode="constant")
+        )
     if "density_block" in convolved:
         blocks = convolved.density_block
         # Not by their std(): older versions of xarray warn if there is one block only.
@@ -138,9 +138,13 @@ def _hat_density_of_states(chain: Chain, source: xr.Dataset) -> xr.Dataset:
     if deposit(positions.ravel(), x[0], x[1] - x[0], weights):
         raise ValueError("the states hold positions that are not finite")
     density = weights / (x[1] - x[0]) / (positions.size / observed.size)
-    variables: Any = {"density": ("x", density), "rods": ((), observed.size)}
-    how: Any = {"source": source.attrs["source"], "method": {"density": "of states"}}
-    return result(chain, variables, coordinates={"x": x}, **how)
+    return result(
+        chain,
+        {"density": ("x", density), "rods": ((), observed.size)},
+        source=source.attrs["source"],
+        method={"density": "of states"},
+        coordinates={"x": x},
+    )
 
 
 def _hat_density_of_theory(source: xr.Dataset) -> xr.Dataset:

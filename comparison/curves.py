@@ -90,8 +90,10 @@ def _as_dataset(label: str, data: Any, quantity: str, abscissa: str) -> xr.Datas
         x, values = (check_numbers(label, column) for column in data)
         return xr.Dataset({quantity: (abscissa, values)}, {abscissa: x})
     except (TypeError, ValueError) as error:
-        known = f"a result, a DataArray or two columns of numbers ({abscissa}, {quantity})"
-        raise ValueError(f"{label}: overlay takes {known}, got {shown(data)}") from error
+        raise ValueError(
+            f"{label}: overlay takes a result, a DataArray or two columns of numbers ({abscissa}, "
+            f"{quantity}), got {shown(data)}"
+        ) from error
 
 
 def _find_curve(label: str, dataset: xr.Dataset, quantity: str, along: str) -> Curve:

@@ -33,12 +33,14 @@ _FINER = 4  # snapshots for one picture, of a chain that is simulated
 _FADING = 0.7  # of a flash, from one picture to the next
 _GROUND, _TALL, _LOW = -0.95, 0.5, 0.25  # heights of the anchors and of the two kinds of rods
 _GREY = "#777777"
-# All pictures are in a page, however large it is.
-_PAGE = {"embed_frames": True, "embed_limit": math.inf, "default_mode": "loop"}
 _WRITERS: dict[str, tuple[Callable[..., animation.AbstractMovieWriter], dict[str, Any]]] = {
     ".mp4": (animation.FFMpegWriter, {"codec": "h264"}),
     ".gif": (animation.PillowWriter, {}),
-    ".html": (animation.HTMLWriter, _PAGE),
+    # All pictures are in a page, however large it is.
+    ".html": (
+        animation.HTMLWriter,
+        {"embed_frames": True, "embed_limit": math.inf, "default_mode": "loop"},
+    ),
 }
 
 
@@ -156,8 +158,9 @@ def _content(
     """
     if suffix == ".html" and has_ffmpeg():
         video = b64encode(_content(figure, show, pictures, ".mp4", a_second)).decode()
-        source = f"data:video/mp4;base64,{video}"
-        return f'<video controls loop autoplay muted src="{source}"></video>\n'.encode()
+        return (
+            f'<video controls loop autoplay muted src="data:video/mp4;base64,{video}"></video>\n'
+        ).encode()
     kind, how = _WRITERS[suffix]
     writer = kind(a_second, **how)
     with tempfile.TemporaryDirectory() as scratch:
@@ -209,8 +212,8 @@ def _rod_film(
     ax.set_xlabel(axis_label(rods.position))
     width = _furnish(ax, chain, x, anchors)
     fastest = float(np.quantile(np.abs(v), 0.99)) or 1.0
-    bodies = PolyCollection([], cmap=DIRECTIONS, edgecolor="black", linewidth=0.4)
-    bodies.set_norm(CenteredNorm(halfrange=fastest))
+    norm = CenteredNorm(halfrange=fastest)
+    bodies = PolyCollection([], cmap=DIRECTIONS, norm=norm, edgecolor="black", linewidth=0.4)
     lines = LineCollection([], color=_GREY, linewidth=1)
     ax.add_collection(lines)
     ax.add_collection(bodies)

@@ -128,9 +128,11 @@ def all_of(groups: Mapping[Any, Mapping[Any, Need]]) -> list[Need]:
 
 def gas(size: int, restitution: float, damping: float = 1.0, correlations: bool = True) -> Solution:
     """Return the steady state of the gas; without correlations its mean field."""
-    name = f"gas L={size} e={restitution:g} gamma={damping:g} correlations={correlations}"
-    chain = Chain(size=size, restitution=restitution, damping=damping)
-    return Solution(name, chain, {"correlations": correlations})
+    return Solution(
+        f"gas L={size} e={restitution:g} gamma={damping:g} correlations={correlations}",
+        Chain(size=size, restitution=restitution, damping=damping),
+        {"correlations": correlations},
+    )
 
 
 # The gas of 1000 rods, in the mean field and with correlations, by the restitution.

@@ -36,8 +36,10 @@ def histogram(runs: Sequence[xr.Dataset], rods: Sequence[int], reach: float) -> 
 def distance_in_plot(v: Array, p: Array, line: Callable[[Array], Array], reach: float) -> float:
     """Return how far off a line the symbols are at most, in a plot to +-``reach`` from p = 0 up."""
     fine = np.linspace(-reach, reach, 4001)
-    ranges = {"x_range": (-reach, reach), "y_range": (0.0, float(p.max()))}
-    return float(distances_in_plot(v, p, fine, line(fine), **ranges).max())
+    distances = distances_in_plot(
+        v, p, fine, line(fine), x_range=(-reach, reach), y_range=(0.0, float(p.max()))
+    )
+    return float(distances.max())
 
 
 def gaussian(v: Array, width: float) -> Array:
@@ -69,5 +71,9 @@ def draw_distributions(ax: Axes, runs: Sequence[xr.Dataset], particles: Sequence
     fine = np.linspace(-5, 5, 201)
     ax.plot(fine, gaussian(fine, 1.0), "k:", label="free rod")
     ax.set_yscale("log")
-    ax.set(ylim=(3e-6, ax.get_ylim()[1]), xlim=(-1.05 * reach, 1.05 * reach))
-    ax.set(xlabel="velocity $v/W$", ylabel="probability density $W p(v)$")
+    ax.set(
+        xlabel="velocity $v/W$",
+        ylabel="probability density $W p(v)$",
+        xlim=(-1.05 * reach, 1.05 * reach),
+        ylim=(3e-6, ax.get_ylim()[1]),
+    )

@@ -48,8 +48,11 @@ def sweep(
     with _workers(processes, scheduler) as executor:
         failed = run_cases(cases, output, executor, keep_old=keep_old)
     reasons = [case.arguments | {"reason": reason} for case, reason in failed.items()]
-    facts = {"cases": len(cases), "folder": str(output), "failed": reasons}
-    answer(as_json, facts, f"{len(cases)} cases in {output}, {len(failed)} of them failed")
+    answer(
+        as_json,
+        {"cases": len(cases), "folder": str(output), "failed": reasons},
+        f"{len(cases)} cases in {output}, {len(failed)} of them failed",
+    )
     _end_if(failed)
 
 
@@ -112,12 +115,13 @@ def reproduce(
         answer(as_json, {"studies": studies}, *lines)
         return
     wanted = find_figures(which)
-    formats = [] if vector is None else [vector]
     drawn, files = [], []
     with writing_to(output), _workers(processes, None) as executor:
         if cases := report.all_cases(wanted, quality):
             _end_if(run_cases(cases, output / "cases", executor))
-        for figure in report.reproduce(wanted, quality, output / "cases", formats=formats):
+        for figure in report.reproduce(
+            wanted, quality, output / "cases", formats=[vector] if vector else []
+        ):
             drawn.append(figure)
             for kind, content in figure.pictures.items():
                 files.append(output / f"{figure.study.stem}.{kind}")
@@ -135,15 +139,18 @@ def _answer_claims(drawn: list[Reproduction], written: list[str], as_json: bool)
     facts, lines = [], [f"wrote {name}" for name in written]
     for figure in drawn:
         for claim in figure.claims:
-            numbers = {
-                "number": claim.number._asdict(),
-                "within": claim.within,
-                "elsewhere": {name: at._asdict() for name, at in claim.elsewhere.items()},
-            }
-            named = {"figure": figure.study.name, "claim": claim.statement}
-            facts.append(named | claim.details | numbers)
+            details = claim.details
+            facts.append(
+                {
+                    "figure": figure.study.name,
+                    "claim": claim.statement,
+                    **details,
+                    "number": claim.number._asdict(),
+                    "within": claim.within,
+                    "elsewhere": {name: at._asdict() for name, at in claim.elsewhere.items()},
+                }
+            )
             lines.append(f"{figure.study.number}. {claim.statement}: {claim.verdict}")
-            shown = [name for name in _PRINTED if name in claim.details]
-            lines += [f"    {name}: {claim.details[name]}" for name in shown]
+            lines += [f"    {name}: {details[name]}" for name in _PRINTED if name in details]
     counted = summary(drawn)
     answer(as_json, {"written": written, "summary": counted, "claims": facts}, *lines, *counted)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from typer import Argument, Option
 
@@ -78,19 +78,23 @@ def simulate(
     """
     from crazybilliards.particles import simulate as run_simulation
 
-    settings: dict[str, Any] = {
-        "duration": duration,
-        "warmup": warmup,
-        "time_step": time_step,
-        "every": every,
-        "average": average,
-        "replicas": replicas,
-        "method": method,
-        "observe": [name.strip() for name in observe.split(",")],
-        "particles": None if particles is None else numbers("particles", particles, int),
-    }
+    reported = None if particles is None else numbers("particles", particles, int)
     with writing_to(output, "simulation.nc"):
-        run = run_simulation(chain, seed=seed, threads=threads, checkpoint=checkpoint, **settings)
+        run = run_simulation(
+            chain,
+            observe=[name.strip() for name in observe.split(",")],
+            duration=duration,
+            warmup=warmup,
+            time_step=time_step,
+            every=every,
+            average=average,
+            replicas=replicas,
+            particles=reported,
+            method=method,
+            seed=seed,
+            threads=threads,
+            checkpoint=checkpoint,
+        )
         conclude(run, output, "simulation.nc", {}, as_json, run.to_dict(), *_run_text(run))
 
 
@@ -141,9 +145,16 @@ def theory(
             "density.png": picture(figures.draw_density_alone, result, solver.title),
             "profile.png": picture(figures.draw_profile, result, solver.title),
         }
-        title = f"{solver.title.capitalize()}, L = {chain.size}, e = {chain.restitution:g}"
         errors = table(_ERRORS | _OF_WALLS if chain.box else _ERRORS, [result.attrs], _OF_ERRORS)
-        residual = f"residual: {result.attrs['residual']:.1e}"
-        text: list[str | Table] = [title, rods_table(result), residual, errors]
-        facts = {"theory": solver.name} | result.to_dict()
-        conclude(result, output, "theory.nc", pictures, as_json, facts, *text)
+        conclude(
+            result,
+            output,
+            "theory.nc",
+            pictures,
+            as_json,
+            {"theory": solver.name} | result.to_dict(),
+            f"{solver.title.capitalize()}, L = {chain.size}, e = {chain.restitution:g}",
+            rods_table(result),
+            f"residual: {result.attrs['residual']:.1e}",
+            errors,
+        )

@@ -38,13 +38,14 @@ def chain_options(*without: str, **defaults: Any) -> Callable[[Any], Callable[..
             continue
         unit = field.metadata["unit"]
         text = field.metadata["meaning"] + (f" [{unit}]." if unit else ".")
-        option = inspect.Parameter(
-            field.name,
-            inspect.Parameter.KEYWORD_ONLY,
-            default=defaults.get(field.name, field.default),
-            annotation=Annotated[kinds[field.name], Option(help=text)],
+        parameters.append(
+            inspect.Parameter(
+                field.name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=defaults.get(field.name, field.default),
+                annotation=Annotated[kinds[field.name], Option(help=text)],
+            )
         )
-        parameters.append(option)
 
     def decorated(command: Callable[..., None]) -> Callable[..., None]:
 

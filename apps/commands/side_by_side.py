@@ -78,15 +78,16 @@ def compare(
     several = [name for name, listed in values.items() if len(listed) > 1]
     [over] = several or ["amplitude" if restitution is None else "restitution"]
     chain = chain.replace(**{name: listed[0] for name, listed in values.items()})
-    how: dict[str, Any] = {
-        "duration": duration,
-        "seed": seed,
-        "processes": processes,
-        "threads": threads,
-        "folder": output and output / "cases",
-    }
     with writing_to(output, "comparison.nc"):
-        tree = grid.compare(chain, {over: values[over]}, **how)
+        tree = grid.compare(
+            chain,
+            {over: values[over]},
+            folder=output and output / "cases",
+            duration=duration,
+            seed=seed,
+            processes=processes,
+            threads=threads,
+        )
         rows = _deviations(over, tree)
         known = {name for row in rows for name in row}  # chains may have no theory
         shown = table({n: _COLUMNS[n] for n in _COLUMNS if n in known}, rows, _CAPTION)
@@ -98,8 +99,15 @@ def compare(
             "displacement.png": picture(figures.draw_displacement, drawn),
             "widths.png": picture(figures.draw_widths, drawn),
         }
-        facts = {"deviations": rows}
-        conclude(tree, output, "comparison.nc", pictures if names else {}, as_json, facts, shown)
+        conclude(
+            tree,
+            output,
+            "comparison.nc",
+            pictures if names else {},
+            as_json,
+            {"deviations": rows},
+            shown,
+        )
 
 
 def _deviations(over: str, tree: xr.DataTree) -> list[dict[str, Any]]:
@@ -108,8 +116,8 @@ def _deviations(over: str, tree: xr.DataTree) -> list[dict[str, Any]]:
 
     rows = []
     for name, group in tree.children.items():
-        run = group["simulation"].to_dataset()
-        named = {over: float(name.removeprefix(f"{over}_")), "status": run.attrs["status"]}
+        status = group["simulation"].attrs["status"]
+        named = {over: float(name.removeprefix(f"{over}_")), "status": status}
         for key, found in deviations(group).items():
             row = named | {"theory": key}
             row |= {f"density_{name}": value for name, value in asdict(found.density).items()}
@@ -118,7 +126,7 @@ def _deviations(over: str, tree: xr.DataTree) -> list[dict[str, Any]]:
                 row |= {f"velocity_width_{name}": value for name, value in width.items()}
                 row["velocity_width_stated"] = group[key].attrs["velocity_width_model_error"]
             rows.append(row)
-        if named["status"] == "diverged" or len(group.children) == 1:  # no theory to compare with
+        if status == "diverged" or len(group.children) == 1:  # no theory to compare with
             rows.append(named)
     return rows
 
@@ -160,17 +168,18 @@ def relax(
         raise ValueError("film needs --output FOLDER, into which it is written")
     if by is None:
         by = {"compressed": 0.3, "displaced": 2.0, "quenched": 3.0}.get(release, 0.5)
-    how: dict[str, Any] = {
-        "release": release,
-        "by": by,
-        "duration": duration,
-        "every": every,
-        "replicas": replicas,
-        "seed": seed,
-        "threads": threads,
-    }
     with writing_to(output, "relaxation.nc"):
-        tree = relaxation.condensed(relaxation.compare_relaxation(chain, **how))
+        tree = relaxation.compare_relaxation(
+            chain,
+            release,
+            by,
+            duration=duration,
+            every=every,
+            replicas=replicas,
+            seed=seed,
+            threads=threads,
+        )
+        tree = relaxation.condensed(tree)
         pictures: dict[str, Any] = {
             "spacetime.png": picture(figures.draw_spacetime, tree),
             "profiles.png": picture(figures.draw_profiles, tree),
@@ -188,5 +197,4 @@ def relax(
             "Of the rods' mean positions in theory from those simulated, in thermal "
             "lengths, without springs in halves of the free room, at the time when it is largest.",
         )
-        facts = {"distances": distances}
-        conclude(tree, output, "relaxation.nc", pictures, as_json, facts, shown)
+        conclude(tree, output, "relaxation.nc", pictures, as_json, {"distances": distances}, shown)

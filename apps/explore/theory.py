@@ -56,8 +56,10 @@ def _why_none(chain: Chain, error: str) -> str:
     if chain.amplitude == 0:
         return "without noise there is no steady motion"
     if "collisions give more" in error:  # the solver has found out
-        bounds = "fewer rods, a smaller e or more damping bound it"
-        return f"by the theory its energy grows without bound; {bounds}"
+        return (
+            "by the theory its energy grows without bound; fewer rods, a smaller e or more damping "
+            "bound it"
+        )
     way = "; fewer rods, a smaller gap or more noise may help" if chain.gap > 0 else ""
     return f"its equations could not be solved for this chain{way}"
 
@@ -67,12 +69,11 @@ def _result(theory: StationaryTheory, chain: Chain) -> dict[str, Any]:
     solved = theory.solve(chain)
     density = smooth(solved).density
     points = density[:: -(-density.x.size // _MOST_POINTS)] * 2 * chain.radius
-    widths = solved.velocity_width.values / chain.free_velocity_width
     errors = {key: solved.attrs[f"{name}_model_error"] for key, name in _ERRORS.items()}
     return {
         "title": theory.title,
         **{key: None if math.isnan(error) else error for key, error in errors.items()},
-        "widths": widths.round(4).tolist(),
+        "widths": (solved.velocity_width.values / chain.free_velocity_width).round(4).tolist(),
         "density": list(
             zip(points.x.values.tolist(), points.values.round(5).tolist(), strict=True)
         ),

@@ -29,8 +29,6 @@ SIMULATION = "simulation"
 ELASTIC = ("equilibrium", "force_balance", "force_balance_arctanh", "rod_by_rod")
 GAS = "steady_state"
 
-_REPLICAS = 2
-
 
 def compare(
     chain: Chain,
@@ -88,7 +86,7 @@ def compare(
         If a simulation fails, for example because its process dies.
     """
     chains = _chains(chain, over)
-    settings = {"duration": duration, "replicas": _REPLICAS, "seed": seed_of(seed)}
+    settings = {"duration": duration, "replicas": 2, "seed": seed_of(seed)}
     elastic = all(theory_of(chain).name == "equilibrium" for chain in chains.values())
     cases = {}
     for name, chain in chains.items():
@@ -107,8 +105,9 @@ def compare(
 
 def elastic_tree(runs: Mapping[str, xr.Dataset], status: str = "completed") -> xr.DataTree:
     """Compute the theories of simulated elastic chains, which are given by their names."""
-    results = {name: {SIMULATION: run} | _elastic_theories(run) for name, run in runs.items()}
-    return _tree(results, status)
+    return _tree(
+        {name: {SIMULATION: run} | _elastic_theories(run) for name, run in runs.items()}, status
+    )
 
 
 def _chains(chain: Chain, over: Mapping[str, ArrayLike]) -> dict[str, Chain]:
@@ -187,8 +186,11 @@ def _elastic_theories(run: xr.Dataset) -> dict[str, xr.Dataset]:
     """Return the theories by their names; the arctanh is fitted to the run."""
     chain = chain_of(run)
     balance = force_balance(chain)
-    theories = {"equilibrium": equilibrium(chain), "force_balance": balance}
-    theories["rod_by_rod"] = rod_by_rod(balance)
+    theories = {
+        "equilibrium": equilibrium(chain),
+        "force_balance": balance,
+        "rod_by_rod": rod_by_rod(balance),
+    }
     if chain.stiffness == 0:  # displacements then have no effect
         return theories
     try:
@@ -201,6 +203,6 @@ def _elastic_theories(run: xr.Dataset) -> dict[str, xr.Dataset]:
     # The fit at the simulated mean positions, to be drawn beside the displacements.
     fitted = fit(chain.anchors + run.mean_displacement)
     arctanh["mean_displacement"] = run.mean_displacement.copy(data=fitted)
-    for name in ("scale", "scale_error", "steepness", "steepness_error", "misfit"):
-        arctanh.attrs[name] = getattr(fit, name)
+    told = ("scale", "scale_error", "steepness", "steepness_error", "misfit")
+    arctanh.attrs |= {name: getattr(fit, name) for name in told}
     return theories | {"force_balance_arctanh": arctanh}

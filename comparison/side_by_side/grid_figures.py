@@ -108,8 +108,7 @@ def _draw_best(ax: Axes, results: dict[str, xr.Dataset], quantity: str) -> None:
     """Draw the simulation and the exact equilibrium or the gas, of which a comparison has one."""
     titles = [TITLES[name] for name in (*_BEST, SIMULATION)]
     shown = {name: results[name] for name in titles if name in results}
-    style = {name: _LOOKS[name] for name in shown}
-    overlay(shown, quantity, along="mean_position", ax=ax, style=style)
+    overlay(shown, quantity, along="mean_position", ax=ax, style={n: _LOOKS[n] for n in shown})
     ax.set_xlabel("")
 
 
@@ -170,8 +169,11 @@ def _draw_theory(
     """Draw a theory as a line in a band of the error that it states, both divided by ``unit``."""
     chain = chain_of(theory)
     values = theory[quantity].values / unit
-    scale: Any = {"velocity_width": values, "density": chain.close_packed_density / unit}
-    scale["mean_displacement"] = displacement_unit(chain)[1] / unit
+    scale: Any = {
+        "velocity_width": values,
+        "density": chain.close_packed_density / unit,
+        "mean_displacement": displacement_unit(chain)[1] / unit,
+    }
     error = theory.attrs.get(f"{quantity}_model_error", 0.0) * scale[quantity]
     x = theory.x if quantity == "density" else theory.normalized_particle
     ax.plot(x, values, **look)

@@ -4,7 +4,7 @@ The fluids are the paper's two equations with a constant W^2, for restitution 1,
 equations for temperature and heat flux.
 """
 
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
 import xarray as xr
@@ -102,18 +102,27 @@ def compare_relaxation(
     fluid = _fluid(chain, release, by)
     # The fluids take a second and are computed first, to find a wrong duration before the long run.
     results = {}
-    # On labels the outermost cell would fill an empty room at a wall, and hold the others off.
-    how: Any = {"every": every, "progress": False, "frame": "eulerian" if in_part else "label"}
     for name, variance in FLUIDS.items():
         if chain.restitution != 1 and variance is None:
             continue
-        found = hydrodynamics(chain, fluid, duration, velocity_variance=variance, **how)
-        results[name], status = found, found.attrs["status"]
-        if status == "interrupted":
+        results[name] = found = hydrodynamics(
+            chain,
+            fluid,
+            duration,
+            every=every,
+            velocity_variance=variance,
+            # On labels the outermost cell would fill an empty room at a wall, and hold the others
+            # off.
+            frame="eulerian" if in_part else "label",
+            progress=False,
+        )
+        if found.attrs["status"] == "interrupted":
             raise KeyboardInterrupt("interrupted before the simulation")
-        if status == "diverged":
-            end = found.attrs["end_time"]
-            raise ValueError(f"the energy diverges after t = {end:g}: give a shorter duration")
+        if found.attrs["status"] == "diverged":
+            raise ValueError(
+                f"the energy diverges after t = {found.attrs['end_time']:g}: give a shorter "
+                "duration"
+            )
     results["rods"] = rod_by_rod(results["evolving"])
     # Rods that exchange their names move independently on such springs.
     free = chain.restitution == 1 and chain.gap == 0 and chain.spring == "linear"
@@ -121,14 +130,25 @@ def compare_relaxation(
         results["exact"] = rod_by_rod(gas_of_points(chain, fluid, duration, every))
     elif free and not chain.unknown():
         results["exact"] = _exact(chain, release, by, duration, every)
-    how = {"duration": duration, "every": every, "replicas": replicas, "average": "ensemble"}
-    how |= {"observe": ("widths", "density", "energy"), "seed": seed, "threads": threads}
-    how |= {"progress": progress and f"{replicas} chains"}
-    start = _states(chain, release, by, fluid, replicas, seed)
-    results[SIMULATION] = simulate(chain, start=start, **how)
+    results[SIMULATION] = simulate(
+        chain,
+        start=_states(chain, release, by, fluid, replicas, seed),
+        observe=("widths", "density", "energy"),
+        duration=duration,
+        every=every,
+        average="ensemble",
+        replicas=replicas,
+        seed=seed,
+        threads=threads,
+        progress=progress and f"{replicas} chains",
+    )
     tree = xr.DataTree.from_dict(results)
-    tree.attrs |= {"status": results[SIMULATION].attrs["status"], "source": "comparison"}
-    tree.attrs |= {"release": release, "by": by}
+    tree.attrs |= {
+        "status": results[SIMULATION].attrs["status"],
+        "source": "comparison",
+        "release": release,
+        "by": by,
+    }
     return tree
 
 

@@ -99,8 +99,11 @@ class Case:
     @property
     def title(self) -> str:
         """The job and what is not the default, but for the random numbers and the observers."""
-        hidden = {"job", "seed", "observe"}
-        changed = [f"{name} {value}" for name, value in self.changed.items() if name not in hidden]
+        changed = [
+            f"{name} {value}"
+            for name, value in self.changed.items()
+            if name not in ("job", "seed", "observe")
+        ]
         return f"{self.job}: {', '.join(changed) or 'defaults'}"
 
     @property

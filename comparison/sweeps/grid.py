@@ -147,13 +147,19 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
         warn_user(f"{folder}: different source code computed these cases")
     table = _varied(points)
     names = [str(name) for name in table]
-    how: dict[str, Any] = {"join": "outer", "compat": "equals", "combine_attrs": "drop_conflicts"}
-    joined = xr.concat(_alike(results), "case", data_vars="all", coords="different", **how)
+    joined = xr.concat(
+        _alike(results),
+        "case",
+        data_vars="all",
+        coords="different",
+        compat="equals",
+        join="outer",
+        combine_attrs="drop_conflicts",
+    )
     joined = _with_attributes(joined, pd.DataFrame([result.attrs for result in results]), names)
     if names:
-        index = pd.MultiIndex.from_frame(table)
-        coordinates = xr.Coordinates.from_pandas_multiindex(index, "case")
-        joined = joined.assign_coords(coordinates).unstack("case").transpose(*names, ...)
+        index = xr.Coordinates.from_pandas_multiindex(pd.MultiIndex.from_frame(table), "case")
+        joined = joined.assign_coords(index).unstack("case").transpose(*names, ...)
         for name, variable in joined.data_vars.items():
             if variable.dtype == object:  # the texts of missing cases
                 joined[name] = variable.fillna("")
@@ -166,11 +172,11 @@ def load_sweep(folder: str | os.PathLike[str]) -> xr.Dataset:
 
 def _varied(points: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
     """Return a column for each parameter that differs between the cases, those of a chain first."""
-    rows = [  # a list, which cannot be a coordinate, becomes text
+    table = pd.DataFrame(
+        # A list, which cannot be a coordinate, becomes text.
         {k: json.dumps(v) if isinstance(v, list) else as_written(v) for k, v in point.items()}
         for point in points
-    ]
-    table = pd.DataFrame(rows)
+    )
     names = [*_CHAIN, *(name for name in table if name not in _CHAIN)]
     return table[[name for name in names if table[name].nunique(dropna=False) > 1]]
 

@@ -48,8 +48,12 @@ class Runs:
 
     def at_step(self, step: float, effort: Effort) -> Runs:
         """Return runs of the same chain at a fixed time step."""
-        settings = {**self.settings, "time_step": step}
-        return replace(self, name=f"{self.name} dt={step:g}", effort=effort, settings=settings)
+        return replace(
+            self,
+            name=f"{self.name} dt={step:g}",
+            effort=effort,
+            settings={**self.settings, "time_step": step},
+        )
 
     def cases(self, quality: Quality) -> dict[str, Case]:
         """Return the cases ``NAME/0``, ``NAME/1``, ..."""

@@ -120,7 +120,6 @@ AMPLITUDE = Study(
 _GAPS = (0.05, 0.2, 1.0)
 _WIDE = 3.0  # a gap that hardly any rods cross, where only the motion in the centre is looked at
 _FLAT = 0.1  # change of ln W_v^2 that still counts as a plateau
-_EFFORT = effort((4, 80, 50), (4, 600, 100))
 _claim = partial(
     Claim, source="appendix, fig:mom_var_gaps", ours="the gaps, the restitutions and the time step"
 )
@@ -130,8 +129,12 @@ def _with_gap(restitution: float, gap: float) -> Runs:
     without = chains.dissipative(chains.LARGE, restitution)
     if gap == 0:
         return without
-    chain = without.chain.replace(gap=gap)
-    return Runs(f"{without.name} g={gap:g}", chain, _EFFORT, {"observe": ["widths"]})
+    return Runs(
+        f"{without.name} g={gap:g}",
+        without.chain.replace(gap=gap),
+        effort((4, 80, 50), (4, 600, 100)),
+        {"observe": ["widths"]},
+    )
 
 
 # By restitution: by time step, the runs by their gaps.

@@ -67,21 +67,26 @@ def _concavity(run: xr.Dataset) -> float:
 def _claims_by_damping(results: Results) -> list[Claim]:
     bulges = [runs.estimate(results, bulge) for runs in _BY_DAMPING[chains.DEFAULT].values()]
     change = np.interp(0.0, [value for value, _ in bulges][::-1], _DAMPINGS[::-1])
-    more = "rods collide more often in the bulk than at the border, gamma ="
-    rate = (
-        "ln of the collision rate of the middle tenth of the contacts over that of the outermost:"
-    )
-    changes = f"it changes at gamma = {change:.1f}; {_CONCAVE}"
-    stated: tuple[tuple[str, str, float, chains.Quantity], ...] = (
-        (f"convex at gamma = {_WEAK:g}", _CONVEX, _WEAK, bulge),
-        (f"concave at gamma = {_STRONG:g}", changes, _STRONG, _concavity),
-        *((f"{more} {g:g}", rate, g, _crowding) for g in (_STRONG, _WEAK)),
-    )
-    claims = [
-        Claim(name, words, **chains.at_steps(results, _BY_DAMPING, g, quantity), source=_SOURCE)
-        for name, words, g, quantity in stated
+    claim = partial(Claim, source=_SOURCE)
+    measured = partial(chains.at_steps, results, _BY_DAMPING)
+    return [
+        claim(f"convex at gamma = {_WEAK:g}", _CONVEX, **measured(_WEAK, bulge)),
+        claim(
+            f"concave at gamma = {_STRONG:g}",
+            f"it changes at gamma = {change:.1f}; {_CONCAVE}",
+            **measured(_STRONG, _concavity),
+        ),
+        *(
+            claim(
+                f"rods collide more often in the bulk than at the border, gamma = {g:g}",
+                "ln of the collision rate of the middle tenth of the contacts over that of the "
+                "outermost:",
+                **measured(g, _crowding),
+            )
+            for g in (_STRONG, _WEAK)
+        ),
+        _power_law_claim(results),
     ]
-    return [*claims, _power_law_claim(results)]
 
 
 def _power_law_claim(results: Results) -> Claim:

@@ -97,8 +97,15 @@ def _draw_along(results: Results) -> Figure:
     widths.set(xscale="log", yscale="log")
     for number, (size, runs) in enumerate(_STEPS[chains.DEFAULT].items()):
         run, theory, colour = runs.mean(results), results[_GAS[size].name], COLOURS[number]
-        look: Any = {"number": number, "label": f"$L = {size}$"}
-        draw_rods(widths, run, "velocity_width", unit=_FREE, along="particle", **look)
+        draw_rods(
+            widths,
+            run,
+            "velocity_width",
+            number=number,
+            unit=_FREE,
+            along="particle",
+            label=f"$L = {size}$",
+        )
         i = np.geomspace(1, size, 200)
         widths.plot(i, fit_border_power_law(run)(i) / _FREE, color=colour)
         widths.plot(theory.particle, theory.velocity_width / _FREE, ":", color=colour, zorder=4)

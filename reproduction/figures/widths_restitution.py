@@ -110,12 +110,16 @@ def _draw_widths(ax: Axes, results: Results) -> None:
     ax.set(ylabel="velocity width $W_v/W$", yscale="log")
     for number, (e, runs) in enumerate((_RUNS | {1.0: chains.ELASTIC}).items()):
         label = f"$e = {e:g}$" + (f", $L = {runs.chain.size}$" if e == 1 else "")
-        run = runs.mean(results)
-        draw_rods(ax, run, "velocity_width", number=number, unit=_UNIT, label=label)
+        draw_rods(ax, runs.mean(results), "velocity_width", number=number, unit=_UNIT, label=label)
         for name, theories in solved.items():
             if theory := theories.get(e):
-                look: Any = {"color": COLOURS[number], "linestyle": chains.LINES[name], "zorder": 4}
-                ax.plot(theory.normalized_particle, theory.velocity_width / _UNIT, **look)
+                ax.plot(
+                    theory.normalized_particle,
+                    theory.velocity_width / _UNIT,
+                    color=COLOURS[number],
+                    linestyle=chains.LINES[name],
+                    zorder=4,
+                )
     along_the_chain(ax)
     for name, theories in solved.items():
         label = rf"{name}, $e \geq {min(theories):g}$"
