@@ -70,11 +70,11 @@ def combine(runs: Sequence[xr.Dataset] | xr.Dataset) -> xr.Dataset:
     for name in ("seed", "ended"):  # of a mean they are lists
         common[name] = [one for each in provenances for one in each[name]]
     common["snapshots"] = int(snapshots.sum())
-    errors = [run.attrs.get("time_step_error", np.nan) for run in runs]
     return found.assign_attrs(
         _common([run.attrs for run in runs]),
         status=next((s for run in runs if (s := run.attrs["status"]) != "completed"), "completed"),
-        time_step_error=float(np.max(errors)),  # NaN, not known, if one of them is
+        # NaN, not known, if one of them is.
+        time_step_error=float(np.max([run.attrs.get("time_step_error", np.nan) for run in runs])),
         provenance=json.dumps(common, sort_keys=True),
     )
 

@@ -194,8 +194,17 @@ def measured_table(result: xr.Dataset) -> Table:
         for name, values in result.data_vars.items()
         if values.size and not str(name).endswith("_error")
     ]
-    columns = {"name": "measured", "over": "over", "mean": "mean", "least": "smallest"}
-    return table(columns | {"most": "largest", "unit": "unit"}, rows)
+    return table(
+        {
+            "name": "measured",
+            "over": "over",
+            "mean": "mean",
+            "least": "smallest",
+            "most": "largest",
+            "unit": "unit",
+        },
+        rows,
+    )
 
 
 def _unit(values: xr.DataArray) -> str:

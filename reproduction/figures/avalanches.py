@@ -37,10 +37,11 @@ def _draw_sizes(ax: Axes, sizes: Array, p: Array, counts: Array, number: int, la
 # -- figure 6: the perfectly inelastic chain, by origin ---------------------------------------
 
 _MIDDLE = 1e-2
-_EFFORTS = dict.fromkeys((1e-1, 2.3e-2, _MIDDLE, 1e-3), effort((4, 40, 30), (4, 200, 60)))
-# At this step, found by trial, pushes have the paper's exponent. So many runs show that, at full
-# quality, both counts have it for some sizes, and at quick quality that one has.
-_EFFORTS[2.3e-2] = effort((4, 1000, 60), (8, 1500, 60))
+_EFFORTS = dict.fromkeys((1e-1, 2.3e-2, _MIDDLE, 1e-3), effort((4, 40, 30), (4, 200, 60))) | {
+    # At this step, found by trial, pushes have the paper's exponent. So many runs show that, at
+    # full quality, both counts have it for some sizes, and at quick quality that one has.
+    2.3e-2: effort((4, 1000, 60), (8, 1500, 60))
+}
 _RUNS = {
     step: Runs(
         f"dt={step:g}",
