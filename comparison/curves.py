@@ -8,9 +8,10 @@ import numpy as np
 import xarray as xr
 
 from crazybilliards.comparison.coverage import require_same_smoothing
+from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.arrays import check_numbers
 from crazybilliards.model.checks import shown
-from crazybilliards.model.vocabulary import chain_of, require, unit_of
+from crazybilliards.model.vocabulary import require, unit_of
 
 _RAISED = re.compile(r"([_^])(-?[\d.]+|[a-z](?:\+\w)?)(?![a-z])")
 # Variables by their symbols; others by their long names.
@@ -143,6 +144,11 @@ def unit_label(variable: xr.DataArray) -> str:
     """Return the unit of a variable in the mathtext of matplotlib."""
     unit = unit_of(variable)
     return f"${unit}$" if "t_0" in unit else _set(unit)
+
+
+def displacement_unit(chain: Chain) -> tuple[str, float]:
+    """Symbol and value [R] of a unit of length: s, without springs half the points' room h."""
+    return ("s", chain.thermal_length) if chain.stiffness else ("h", chain.walls[1])
 
 
 def _set(text: str) -> str:

@@ -8,8 +8,8 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.comparison.coverage import require_same_smoothing, smooth
-from crazybilliards.comparison.widths import WidthDeviation, width_deviation
-from crazybilliards.model import Array, chain_of
+from crazybilliards.model import WALLS_AND_MASSES, Array, chain_of
+from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.model.checks import check_real
 from crazybilliards.model.grid import require_even
 from crazybilliards.model.vocabulary import require
@@ -18,6 +18,7 @@ from crazybilliards.model.warn import warn_user
 _SAME_RODS = 0.05  # of the number of rods, by which two densities of a chain may differ
 _WHOLE = 1e-3  # of the number of rods, by which they may if their grids end at other places
 _SAME_NODE = 1e-3  # of the spacing, by which nodes may differ
+_LEAST_INNER = 7  # rods from which on the two at each border are left out of the largest deviation
 _RELIABLE = 0.2  # of a density, up to which an error bar is
 
 
@@ -93,6 +94,48 @@ def deviation(
         integrated=float(share),
         maximum_in_errors=float(np.abs(in_errors).max()) if in_errors.size else None,
         rms_in_errors=float(np.sqrt((in_errors**2).mean())) if in_errors.size else None,
+    )
+
+
+class WidthDeviation(NamedTuple):
+    """Relative deviations of velocity widths, theory minus simulation."""
+
+    largest: float  # over the particles 3 to L - 2
+    centre: float  # of the middle tenth of the rods
+    border: float  # of the first and the last rod
+    error: float  # typical standard error of a rod's simulated width
+    border_error: float  # that of the border's
+    largest_in_errors: float  # over all particles, in standard errors of each
+
+
+def width_deviation(run: xr.Dataset, theory: xr.Dataset) -> WidthDeviation:
+    """Compare the velocity widths of a simulation and a theory of the same chain.
+
+    Both ends of a chain have the same averages, if their rods have the same mass. Simulated widths
+    are then averaged over a rod and its mirror image, but not for ``largest_in_errors``.
+    """
+    chain = chain_of(run)
+    chain.require_known("the mean over mirror images", WALLS_AND_MASSES)
+    size = chain.size
+    square = run.velocity_width.values**2
+    if chain.mass_ratio == 1 or size % 2:
+        square = (square + square[::-1]) / 2
+    expected = theory.velocity_width.values**2
+    inner = slice(2, size - 2) if size >= _LEAST_INNER else slice(None)
+
+    def relative(part: slice | list[int]) -> float:
+        return float(np.sqrt(expected[part].mean() / square[part].mean()) - 1)
+
+    each = np.sqrt(expected / square) - 1
+    in_errors = (theory.velocity_width.values - run.velocity_width) / run.velocity_width_error
+    relative_error = (run.velocity_width_error / run.velocity_width).values
+    return WidthDeviation(
+        largest=float(np.abs(each[inner]).max()),
+        centre=relative(middle_tenth(size)),
+        border=relative([0, -1]),
+        error=float(np.median(relative_error)),
+        border_error=float(np.hypot(relative_error[0], relative_error[-1]) / 2),
+        largest_in_errors=float(np.abs(in_errors).max()),
     )
 
 

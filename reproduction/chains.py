@@ -38,8 +38,6 @@ _AT_STEP = {
     101: effort((4, 100), (6, 1500)),
     LARGE: effort((4, 40, 20), (6, 800, 50)),
 }
-_AGAIN = effort((4, 40, 20), (4, 200, 50))
-_FLIPPERS_AGAIN = effort((4, 300), (4, 1500))
 
 Quantity = Callable[[xr.Dataset], float]
 Key = TypeVar("Key")
@@ -98,10 +96,14 @@ def at_both_steps(runs: Mapping[Key, Runs]) -> dict[str, dict[Key, Runs]]:
     def again(chain: Chain) -> Effort:
         if chain == Chain(size=LARGE, restitution=0.0):
             return _AT_STEP[LARGE]
-        return _FLIPPERS_AGAIN if chain.restitution > 1 else _AGAIN
+        if chain.restitution > 1:
+            return effort((4, 300), (4, 1500))
+        return effort((4, 40, 20), (4, 200, 50))
 
-    others = {key: one.at_step(OTHER_STEP, again(one.chain)) for key, one in runs.items()}
-    return {DEFAULT: dict(runs), OTHER: others}
+    return {
+        DEFAULT: dict(runs),
+        OTHER: {key: one.at_step(OTHER_STEP, again(one.chain)) for key, one in runs.items()},
+    }
 
 
 def at_steps(results: Results, steps: Steps[Key], key: Key, quantity: Quantity) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Profiles along the chain: mirror images, the shape of W_v(i), the paper's two power laws."""
+"""Profiles along the chain: centre and border, mirror images, the paper's two power laws."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -8,9 +8,19 @@ import xarray as xr
 
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.fits import fit_border_power_law
-from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import Array, chain_of
+from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.reproduction.claims.verdicts import EYE, Estimate, furthest_in_plot, in_plot
+
+
+def central_width(run: xr.Dataset, of: str = "velocity_width") -> float:
+    """W_v in the centre, or W_x: root mean square over the middle tenth of the rods."""
+    return float(np.sqrt((run[of].values[middle_tenth(run.sizes["particle"])] ** 2).mean()))
+
+
+def border_width(run: xr.Dataset) -> float:
+    """W_v of the first and the last rod: root mean square of the two."""
+    return float(np.sqrt((run.velocity_width.values[[0, -1]] ** 2).mean()))
 
 
 def mirrored(run: xr.Dataset) -> xr.Dataset:

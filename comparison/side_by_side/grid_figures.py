@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
-from crazybilliards.comparison.curves import axis_label
+from crazybilliards.comparison.curves import axis_label, displacement_unit
 from crazybilliards.comparison.drawing import (
     COLOURS,
     ONE_COLUMN,
@@ -27,7 +27,6 @@ from crazybilliards.comparison.drawing import (
 )
 from crazybilliards.comparison.side_by_side.grid import ELASTIC, GAS, SIMULATION
 from crazybilliards.comparison.stationary_theories import TITLES
-from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.model import chain_of
 
 _SYMBOLS = {"amplitude": "A", "restitution": "e", "size": "L", "gap": "g", "damping": r"\gamma"}
@@ -121,8 +120,9 @@ def _draw_differences(ax: Axes, results: dict[str, xr.Dataset], quantity: str, u
         differences[name] = result.assign({quantity: difference.assign_attrs(reference.attrs)})
         if (error := result.get(f"{quantity}_error")) is not None:
             differences[name][f"{quantity}_error"] = 100 / unit * error
-    looks = {name: _LOOKS[name] for name in results}
-    looks[SIMULATION] = {"color": "black", "marker": "none"}
+    looks = {name: _LOOKS[name] for name in results} | {
+        SIMULATION: {"color": "black", "marker": "none"}
+    }
     overlay(differences, quantity, along="mean_position", ax=ax, style=looks)
 
 

@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 
 from crazybilliards.comparison.coverage import smooth
+from crazybilliards.comparison.curves import displacement_unit
 from crazybilliards.comparison.side_by_side.grid import SIMULATION
-from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.kinetic import (
     compressed,
     displaced,

@@ -9,11 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crazybilliards.comparison.coverage import smooth
-from crazybilliards.comparison.curves import axis_label, unit_label
+from crazybilliards.comparison.curves import axis_label, displacement_unit, unit_label
 from crazybilliards.comparison.drawing import TWO_COLUMNS, entitle, legend_above, overlay, panels
 from crazybilliards.comparison.side_by_side.grid import SIMULATION
 from crazybilliards.comparison.side_by_side.relaxation import LEGEND, cloud
-from crazybilliards.comparison.widths import displacement_unit
 from crazybilliards.model import Chain, chain_of
 
 _NAMES = {SIMULATION: SIMULATION} | LEGEND

@@ -15,12 +15,11 @@ from crazybilliards.comparison.drawing import (
     legend_above,
     panels,
 )
-from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.reproduction import chains
 from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, at_choices, worst
-from crazybilliards.reproduction.profiles import mirrored
+from crazybilliards.reproduction.profiles import central_width, mirrored
 
 # -- figure 18: the amplitude only sets the scale ---------------------------------------------
 

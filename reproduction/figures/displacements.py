@@ -19,13 +19,12 @@ from crazybilliards.comparison.drawing import (
     mark_clipped,
     panels,
 )
-from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Array, Chain, chain_of
 from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.reproduction import chains
 from crazybilliards.reproduction.claims.study import Results, Runs, Study
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, at_choices
-from crazybilliards.reproduction.profiles import beyond_the_eye, mirrored
+from crazybilliards.reproduction.profiles import beyond_the_eye, central_width, mirrored
 
 _S = Chain().thermal_length
 

@@ -10,13 +10,13 @@ from matplotlib.figure import Figure
 from scipy.optimize import curve_fit
 
 from crazybilliards.comparison.drawing import legend_above, panels
-from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import Array, chain_of
 from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.reproduction import chains, distributions
 from crazybilliards.reproduction.claims.study import Results, Runs, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, at_choices, in_plot
 from crazybilliards.reproduction.fits import tail_length
+from crazybilliards.reproduction.profiles import border_width, central_width
 
 
 def _draw(results: Results, runs: Runs, particles: Sequence[int]) -> Figure:

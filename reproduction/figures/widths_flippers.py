@@ -17,13 +17,12 @@ from crazybilliards.comparison.drawing import (
     panels,
 )
 from crazybilliards.comparison.fits import fit_border_power_law
-from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Array, Chain, chain_of
 from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.reproduction import chains
 from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort, share_of_runs
 from crazybilliards.reproduction.claims.verdicts import EYE, Claim, Estimate, at_choices
-from crazybilliards.reproduction.profiles import beyond_the_eye, bulge, mirrored, nu
+from crazybilliards.reproduction.profiles import beyond_the_eye, bulge, central_width, mirrored, nu
 
 _RESTITUTION = 1.05
 _CONVEX = "ln of the border's width over the centre's:"

@@ -19,13 +19,12 @@ from crazybilliards.comparison.drawing import (
     panels,
 )
 from crazybilliards.comparison.fits import Fit, fit_border_power_law
-from crazybilliards.comparison.widths import central_width
 from crazybilliards.model import Chain
 from crazybilliards.reproduction import chains
 from crazybilliards.reproduction.claims.study import Results, Runs, Study, effort
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, around, at_choices, worst
 from crazybilliards.reproduction.fits import fit_scaling
-from crazybilliards.reproduction.profiles import fits_in_plot, nu
+from crazybilliards.reproduction.profiles import central_width, fits_in_plot, nu
 
 _FREE = Chain().free_velocity_width
 

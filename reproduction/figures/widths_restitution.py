@@ -17,12 +17,11 @@ from crazybilliards.comparison.drawing import (
     letter,
 )
 from crazybilliards.comparison.fits import Fit
-from crazybilliards.comparison.widths import central_width
 from crazybilliards.reproduction import chains
 from crazybilliards.reproduction.claims.study import Results, Runs, Study
 from crazybilliards.reproduction.claims.verdicts import Claim, Estimate, at_choices, worst
 from crazybilliards.reproduction.fits import fit_exponential
-from crazybilliards.reproduction.profiles import bulge, fits_in_plot, nu
+from crazybilliards.reproduction.profiles import bulge, central_width, fits_in_plot, nu
 
 _RUNS = {e: chains.dissipative(chains.LARGE, e) for e in chains.RESTITUTIONS}
 _STEPS = chains.at_both_steps(_RUNS)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from crazybilliards.comparison import compare
-from crazybilliards.comparison.distances import deviations
+from crazybilliards.comparison.distances import deviations, width_deviation
 from crazybilliards.comparison.side_by_side.grid import GAS, SIMULATION
 from crazybilliards.comparison.side_by_side.grid_figures import (
     draw_density,
@@ -16,7 +16,6 @@ from crazybilliards.comparison.side_by_side.grid_figures import (
     draw_widths,
 )
 from crazybilliards.comparison.stationary_theories import THEORIES, TITLES, theory_of
-from crazybilliards.comparison.widths import width_deviation
 from crazybilliards.kinetic import UnmeasuredWarning, equilibrium, force_balance, steady_state
 from crazybilliards.model import Chain
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.fft import dct
 
 from crazybilliards.comparison import smooth
-from crazybilliards.comparison.widths import width_deviation
+from crazybilliards.comparison.distances import width_deviation
 from crazybilliards.kinetic import equilibrium
 from crazybilliards.model import Chain
 from crazybilliards.model.grid import position_grid

@@ -9,7 +9,6 @@ from scipy.stats import norm, t
 
 from crazybilliards.comparison.distances import distances_in_plot
 from crazybilliards.comparison.fits import fit_border_power_law
-from crazybilliards.comparison.widths import border_width, central_width
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
 from crazybilliards.reproduction.claims.study import Runs, effort, error_of_mean, share_of_runs
@@ -24,7 +23,7 @@ from crazybilliards.reproduction.claims.verdicts import (
     worst,
 )
 from crazybilliards.reproduction.distributions import mean_shape
-from crazybilliards.reproduction.profiles import fits_in_plot, mirrored
+from crazybilliards.reproduction.profiles import border_width, central_width, fits_in_plot, mirrored
 
 
 def every_kind(value, error):

@@ -43,8 +43,7 @@ FLOORS = {
         {"fluids"},
     ),
     "comparison": (
-        {"combining", "coverage", "curves", "distances", "drawing", "fits", "widths"}
-        | {"stationary_theories"},
+        {"combining", "coverage", "curves", "distances", "drawing", "fits", "stationary_theories"},
         {"sweeps"},
         {"side_by_side"},
         {"films"},
