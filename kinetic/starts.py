@@ -23,6 +23,7 @@ from crazybilliards.model.warn import warn_user
 
 _RODS_TOLERANCE = 1e-3
 _READ = ("density", "label", "flow_velocity", "velocity_variance")
+_APART = 0.5  # rods; more is no error of a grid, unless it is below a hundredth of all
 _POINTS = 10_001  # from wall to wall
 _CROWDED = 1.01  # so many rods in the length of one overlap, but for errors of the grid
 _CRYSTAL = (
@@ -164,9 +165,14 @@ def read_start(chain: Chain, start: xr.Dataset) -> Start:
         )
     require_rods(chain, "density", label[-1])
     scale = chain.size / label[-1]
-    given = x
+    given, apart = x, float(np.abs(label - rods).max())
     if chain.box:
         x, density, label = _up_to_the_walls(chain, x, density, label)
+    if apart > max(_APART, 0.01 * chain.size):  # the label is followed, and the density is not
+        raise ValueError(
+            f"start: its label and the integral of its density are {apart:.3g} rods apart; start."
+            "drop_vars('label') has the density alone"
+        )
     profiles = {}
     for name, default in (("flow_velocity", 0.0), ("velocity_variance", _fluid_variance(own))):
         values = _numbers(start, name) if name in start else np.full(given.size, default)
