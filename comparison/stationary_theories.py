@@ -6,8 +6,7 @@ from typing import Any
 
 import xarray as xr
 
-from crazybilliards.kinetic.exact.gibbs_measure import equilibrium
-from crazybilliards.kinetic.exact.recursion import check_equilibrium
+from crazybilliards.kinetic.exact.gibbs_measure import check_equilibrium, equilibrium
 from crazybilliards.kinetic.gas.stationary import check_steady_state, steady_state
 from crazybilliards.kinetic.statics.balance import check_force_balance, force_balance
 from crazybilliards.model import Chain

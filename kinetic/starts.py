@@ -17,7 +17,7 @@ from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import fluid_reach, stationary
 from crazybilliards.model import WALLS_AND_MASSES, Array, Chain, chain_of
 from crazybilliards.model.checks import check_real, refuse_units, shown
-from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import OF_FLUID, OF_RODS, refuse_unread, require, result
 from crazybilliards.model.warn import warn_user
 
@@ -49,7 +49,7 @@ def compressed(chain: Chain, factor: float) -> xr.Dataset:
 def _stationary_image(chain: Chain, stretch: float = 1.0, shift: float = 0.0) -> xr.Dataset:
     require_chain(chain, "a start from the stationary state")
     # Stretching widens the lattice of anchors as well as the tails beyond it.
-    wider = max(stretch - 1, 0.0) * (chain.lattice_gap * chain.size / 2 + thermal_reach(chain))
+    wider = max(stretch - 1, 0.0) * (chain.lattice_gap * chain.size / 2 + chain.thermal_reach)
     grid = position_grid(chain, fluid_reach(chain) + abs(shift) + wider)
     return _at_rest(chain, grid, *stationary(chain).fields(chain, grid - shift, stretch))
 

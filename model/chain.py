@@ -33,6 +33,8 @@ from crazybilliards.model.checks import shown
 from crazybilliards.model.parameters import KNOWN, Parameters
 from crazybilliards.model.words import check_arguments, with_hints
 
+_TAIL = 40.0  # exp(-40) = 4e-18: nothing that double precision sees lies beyond U(d) = 40 T
+
 
 @dataclass(frozen=True, kw_only=True)
 class Chain(Parameters):
@@ -221,6 +223,11 @@ class Chain(Parameters):
         if self.stiffness == 0:
             return math.inf
         return float(spring.root(self.temperature / self.stiffness, self.potential_exponent))
+
+    @property
+    def thermal_reach(self) -> float:
+        """Displacement whose spring energy is 40 T, beyond which no thermal rod is found [R]."""
+        return self.reach(_TAIL * self.temperature)
 
     @property
     def spreads(self) -> bool:

@@ -22,54 +22,37 @@ _BYTES_PER_NODE = 200  # some 25 arrays of a theory
 # In units of the chain's length: displacements of this size keep seven digits in a position.
 _SMALLEST_REACH = 1e-9
 _MISSED = 1e-5  # share of the rods that a whole grid may miss: rounding, or single precision
-_TAIL = 40.0  # exp(-40) = 4e-18: nothing that double precision sees lies beyond U(d) = 40 T
-
-
-def thermal_reach(chain: Chain) -> float:
-    """Displacement whose spring energy is 40 T, beyond which no thermal rod is found [R]."""
-    return chain.reach(_TAIL * chain.temperature)
 
 
 def require_resolved(chain: Chain, extent: float) -> None:
     """Raise a ValueError if thermal displacements are lost in the rounding of such positions."""
-    if 0 < thermal_reach(chain) < _SMALLEST_REACH * extent:
+    if 0 < chain.thermal_reach < _SMALLEST_REACH * extent:
         raise ValueError(
             f"the thermal length {chain.thermal_length:.3g} is lost in the rounding of positions "
             f"up to {extent:.3g}: amplitude is too small for this chain"
         )
 
 
-def bins_per_rod(chain: Chain, reach: float | None = None) -> int:
-    """Return the odd number n of grid spacings in one rod length 2R.
-
-    It is 21, or more to resolve the thermal length, but at most as many as make 2**18 nodes.
-    """
-    wanted = max(_BINS_PER_ROD, 8 * chain.radius / (chain.thermal_length or math.inf))
-    affordable = _MOST_NODES * 2 * chain.radius / (2 * _half_width(chain, reach))
-    n = int(min(math.ceil(wanted), max(affordable, 1.0)))
-    return n if n % 2 else n - 1
-
-
 def position_grid(chain: Chain, reach: float | None = None) -> NDArray[np.float64]:
     """Nodes x, uniform and symmetric about 0, that hold every rod and its smoothing [R].
 
-    ``reach``: the largest displacement from the outer anchors to make room for;
-    ``thermal_reach(chain)`` if None. It is a ValueError if the 200 bytes per node that a theory
+    A rod length 2R has 21 spacings, or more to resolve the thermal length, but at most as many as
+    make 2**18 nodes. ``reach``: the largest displacement from the outer anchors to make room for;
+    ``chain.thermal_reach`` if None. It is a ValueError if the 200 bytes per node that a theory
     needs are not available, or if displacements are lost in the rounding of positions.
     """
-    half_width = _half_width(chain, reach)
+    half_width = float(chain.anchors[-1]) + (chain.thermal_reach if reach is None else reach)
+    # The two running averages, of a rod length each, spread a point by 2R to either side.
+    half_width = min(half_width, chain.box / 2 or math.inf) + 4 * chain.radius
     require_resolved(chain, half_width)
-    spacing = 2 * chain.radius / bins_per_rod(chain, reach)
+    wanted = max(_BINS_PER_ROD, 8 * chain.radius / (chain.thermal_length or math.inf))
+    affordable = _MOST_NODES * 2 * chain.radius / (2 * half_width)
+    n = int(min(math.ceil(wanted), max(affordable, 1.0)))
+    spacing = 2 * chain.radius / (n if n % 2 else n - 1)
     half = math.ceil(half_width / spacing)
     of_what = f"{2.0 * half:.3g} positions, {spacing:.3g} apart, from {-half_width:.3g} R on"
     require_memory(f"size, radius or stiffness: a grid of {of_what}", 2.0 * half * _BYTES_PER_NODE)
     return spacing * np.arange(-half, half + 1.0)
-
-
-def _half_width(chain: Chain, reach: float | None) -> float:
-    half = float(chain.anchors[-1]) + (thermal_reach(chain) if reach is None else reach)
-    # The two running averages, of a rod length each, spread a point by 2R to either side.
-    return min(half, chain.box / 2 or math.inf) + 4 * chain.radius
 
 
 def require_even(x: NDArray[np.float64], who: str) -> float:

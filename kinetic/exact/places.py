@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.special import betainc, betaincinv, betaln, log_ndtr, ndtr, ndtri
 
-from crazybilliards.kinetic.exact.recursion import recursion_of, weights
+from crazybilliards.kinetic.exact.gibbs_measure import recursion_of, weights
 from crazybilliards.model import Array, Chain
 
 # More rods are not resolved: neither by a grid of positions nor, with a gap, within seconds.

@@ -29,7 +29,7 @@ from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import length_unit
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Array, Chain
-from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.grid import position_grid
 
 _COURANT = 0.5
 _MOST_COURANT = 1.0  # beyond, four-stage Runge-Kutta with second-order fluxes is not stable
@@ -207,7 +207,7 @@ def _on_grid(chain: Chain, faces: Array, solution: Array, constants: Constants) 
     """Put the cells' means onto the position grid and the particles."""
     L = chain.size
     h, middle = faces[1] - faces[0], (faces[1:] + faces[:-1]) / 2
-    x = position_grid(chain, max(float(faces[-1] - chain.anchors[-1]), thermal_reach(chain)))
+    x = position_grid(chain, max(float(faces[-1] - chain.anchors[-1]), chain.thermal_reach))
     within = np.clip(x, faces[0], faces[-1])
     density, label, velocity, variance = np.empty((4, len(solution), x.size))
     rods, rod_velocities = np.empty((2, len(solution), L))

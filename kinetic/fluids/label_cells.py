@@ -9,7 +9,7 @@ from scipy.interpolate import PchipInterpolator
 from crazybilliards.kinetic.fluids.pde_solver import FlowFields
 from crazybilliards.kinetic.statics.label_closure import Stationary
 from crazybilliards.model import Array, Chain, spring
-from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.grid import position_grid
 
 _EDGE_CELL = 0.045  # width of a cell at the edge, in thermal lengths
 _LAST_SHARE = 1e-5  # of the rods, beyond the outermost face
@@ -105,7 +105,7 @@ def on_positions(
     place, slope = _continued(rest, moved, nodes)
     position, speed = s * place + 2 * R * L * labels, _continued(rest, flow, nodes)[0]
     farthest = float(np.abs(position[:, [0, -1]]).max()) - chain.anchors[-1]
-    x = position_grid(chain, max(farthest, thermal_reach(chain)))
+    x = position_grid(chain, max(farthest, chain.thermal_reach))
     density, label, velocity, variance, heat = np.zeros((5, len(solution), x.size))
     for i, edges in enumerate(position):
         within = np.clip(x, edges[0], edges[-1])

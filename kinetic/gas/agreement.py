@@ -61,6 +61,7 @@ class Steady(NamedTuple):
     medium: Medium
     cells: Cells
     mean: MeanState
+    width: Array  # q, of each rod in its neighbourhood; NaN if rods are not resolved
     closure: Closure
     labels: Labels | None  # of exchangeable points
     fluctuations: Fluctuations | None = None
@@ -73,16 +74,18 @@ def mean_field(chain: Chain, cells: Cells) -> Steady:
     """Return the steady state in which colliding rods are independent."""
     medium, closure = Medium.of(chain), Closure.of_mean_field(cells.contacts)
     descriptions = Descriptions(chain, cells, mean_field=True)
+    labels, off, flux = descriptions.labels, 0.0, None
     bare = not chain.box and chain.spring == "linear" and chain.size > 1
-    # Their heavy tails are beyond a closure.
-    if bare and chain.restitution > 1 and (labels := descriptions.labels):
+    if bare and chain.restitution > 1 and labels:
+        # Their heavy tails are beyond a closure.
         found = driven_points(chain)
         T, flux = found.at(labels.score)
         mean = labels.averaged(T, labels.balanced(T, np.zeros(T.size)))
         off, flux = found.residual, chain.size * flux
-        return Steady(medium, cells, mean, closure, labels, residual=off, flux=flux)
-    mean = descriptions.solve(medium, closure)
-    return Steady(medium, cells, mean, closure, descriptions.labels)
+    else:
+        mean = descriptions.solve(medium, closure)
+    width = descriptions.widths(medium, mean)
+    return Steady(medium, cells, mean, width, closure, labels, residual=off, flux=flux)
 
 
 def in_agreement(chain: Chain, cells: Cells) -> Steady:
@@ -117,7 +120,8 @@ def in_agreement(chain: Chain, cells: Cells) -> Steady:
     if (growth := max(each.largest_growth() for each in responses)) > 0:
         raise NoSteadyStateError(f"the state is not stable: deviations grow at the rate {growth:g}")
     found, labels = Fluctuations(background, pairs, displaced), descriptions.labels
-    return Steady(medium, cells, mean, closure, labels, found, end.residual, iterations)
+    width = descriptions.widths(medium, mean)
+    return Steady(medium, cells, mean, width, closure, labels, found, end.residual, iterations)
 
 
 def _background(

@@ -33,8 +33,14 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.special import ndtri
 
-from crazybilliards.kinetic.exact.places import at_temperature, beta_scores
-from crazybilliards.kinetic.exact.recursion import recursion_of
+from crazybilliards.kinetic.exact.gibbs_measure import recursion_of
+from crazybilliards.kinetic.exact.places import (
+    are_resolved,
+    at_temperature,
+    beta_scores,
+    elastic_rods,
+    exchangeable,
+)
 from crazybilliards.kinetic.gas.cells import Cells, cells_of_points, means
 from crazybilliards.kinetic.gas.closure import Closure
 from crazybilliards.kinetic.gas.mean_state import (
@@ -177,6 +183,19 @@ class Descriptions:
             shared,
         )
         return labels.averaged(self.T_of_points, balance)
+
+    def widths(self, medium: Medium, state: MeanState) -> Array:
+        """Return the width of each rod in its neighbourhood; NaN if rods are not resolved."""
+        if not are_resolved(self.chain):
+            return np.full(medium.size, np.nan)
+        if labels := self.labels:
+            law, ends = exchangeable(medium.size), labels.score[[0, -1]]
+            y = PchipInterpolator(labels.score, labels.place)(np.clip(law.places, *ends))
+            return np.asarray(np.sqrt(law.mean(y**2) - law.mean(y) ** 2))
+        T = np.interp(np.arange(0.5, medium.size), self.cells.centres, state.temperature)
+        mean = float(T.mean())
+        elastic = elastic_rods(at_temperature(self.chain, mean * self.chain.temperature))
+        return elastic.width() / medium.length * np.sqrt(T / mean)
 
 
 def contact_share(chain: Chain, medium: Medium, cells: Cells, temperature: Array) -> Array:

@@ -37,7 +37,7 @@ from scipy.special import wrightomega
 
 from crazybilliards.kinetic.accuracy import expected
 from crazybilliards.model import Array, Chain, spring
-from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import result
 
 BY_LABELS = "force balance, by labels"
@@ -203,4 +203,4 @@ def _closed_form(energy: Array, lam: float, side: float) -> tuple[Array, Array]:
 
 def fluid_reach(chain: Chain) -> float:
     """Distance from the outer anchor, half a cell before its lattice ends, to the vacuum [R]."""
-    return thermal_reach(chain) + chain.radius + chain.lattice_gap / 2
+    return chain.thermal_reach + chain.radius + chain.lattice_gap / 2

@@ -24,7 +24,7 @@ from scipy.special import wrightomega
 from crazybilliards.kinetic.statics.label_closure import fluid_reach
 from crazybilliards.kinetic.statics.profiles import Profile
 from crazybilliards.model import Array, Chain
-from crazybilliards.model.grid import position_grid, thermal_reach
+from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import result
 
 _POINTS = 5  # of the quadrature in a cell
@@ -90,7 +90,7 @@ def solve_wright_closure(chain: Chain, profile: Profile) -> xr.Dataset:
 
 def _edges(chain: Chain, profile: Profile) -> Array:
     """Return the nodes inside the profile, with room for rods that spread further than usual."""
-    wide = position_grid(chain, 2 * thermal_reach(chain) + float(chain.anchors[-1]))
+    wide = position_grid(chain, 2 * chain.thermal_reach + float(chain.anchors[-1]))
     ends = [end for end in (profile.left, profile.right) if abs(end) < wide[-1]]
     return np.unique(np.concatenate([wide[(wide > profile.left) & (wide < profile.right)], ends]))
 

@@ -6,7 +6,7 @@ from typing import Self
 import numpy as np
 
 from crazybilliards.model.checks import check_real
-from crazybilliards.model.grid import deposit, position_grid, thermal_reach
+from crazybilliards.model.grid import deposit, position_grid
 from crazybilliards.model.warn import warn_user
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
 from crazybilliards.particles.run import Run
@@ -17,7 +17,7 @@ _TAIL, _WIDTHS = 40.0, 8.0  # of the energy, in T; of a displacement, in standar
 def _reach(run: Run) -> float:
     """Distance from its anchor that hardly any rod exceeds [R]."""
     chain, time = run.chain, run.warmup + run.duration
-    thermal = thermal_reach(chain)
+    thermal = chain.thermal_reach
     if not np.isfinite(thermal):
         # Without damping or springs rods are heated, or spread, for the whole run.
         damped = min(time, chain.mass / chain.damping) if chain.damping > 0 else time

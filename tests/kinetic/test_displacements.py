@@ -7,7 +7,7 @@ from scipy.optimize import curve_fit
 
 from crazybilliards.kinetic.gas.agreement import in_agreement, relaxing_pairs
 from crazybilliards.kinetic.gas.cells import make_cells
-from crazybilliards.kinetic.gas.stationary_result import rods_of
+from crazybilliards.kinetic.gas.stationary import rods_of
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 

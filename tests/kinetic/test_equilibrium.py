@@ -8,7 +8,7 @@ from scipy.special import betainc
 from scipy.stats import beta, gennorm
 
 from crazybilliards.kinetic import equilibrium, equilibrium_states
-from crazybilliards.kinetic.exact.recursion import recursion_of
+from crazybilliards.kinetic.exact.gibbs_measure import recursion_of
 from crazybilliards.model import Chain
 
 

@@ -10,7 +10,7 @@ from crazybilliards.kinetic import equilibrium, steady_state
 from crazybilliards.kinetic.gas import agreement, fixed_point, mean_state
 from crazybilliards.kinetic.gas.cells import make_cells
 from crazybilliards.kinetic.gas.mean_state import Medium, mean_slope
-from crazybilliards.kinetic.gas.stationary_result import rods_of
+from crazybilliards.kinetic.gas.stationary import rods_of
 from crazybilliards.model import Chain
 from crazybilliards.particles import simulate
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from crazybilliards.model import Chain, spring
 from crazybilliards.model.arrays import middle_tenth
-from crazybilliards.model.grid import bins_per_rod, deposit, position_grid, thermal_reach
+from crazybilliards.model.grid import deposit, position_grid
 from crazybilliards.particles.dynamics import make_step
 from crazybilliards.particles.stepping import FIRST, kick
 
@@ -103,11 +103,11 @@ def test_chain_and_kernel_follow_the_law(kind):
 def test_the_grid_is_symmetric_odd_per_rod_and_wide_enough(amplitude, size, gap):
     chain = Chain(amplitude=amplitude, size=size, gap=gap)
     x = position_grid(chain)
-    n = bins_per_rod(chain)
+    n = round(2 * chain.radius / (x[1] - x[0]))
     assert n % 2 == 1
     np.testing.assert_allclose(np.diff(x), 2 * chain.radius / n, rtol=1e-6)
     np.testing.assert_array_equal(x, -x[::-1])
-    assert x[-1] >= chain.anchors[-1] + thermal_reach(chain) + 4 * chain.radius
+    assert x[-1] >= chain.anchors[-1] + chain.thermal_reach + 4 * chain.radius
     assert x.size <= 2**18 + 4
 
 
