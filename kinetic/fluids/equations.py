@@ -52,10 +52,9 @@ import numpy as np
 import xarray as xr
 from scipy.integrate import trapezoid
 
-from crazybilliards.kinetic.fluids.eulerian_frame import solve_on_positions
+from crazybilliards.kinetic.fluids.eulerian_frame import MOST_CELLS, solve_on_positions
 from crazybilliards.kinetic.fluids.label_frame import exchange_of, solve_on_labels
 from crazybilliards.kinetic.fluids.pde_solver import FlowFields
-from crazybilliards.kinetic.fluids.position_cells import MOST_CELLS
 from crazybilliards.kinetic.fluids.stated_errors import errors_to_state
 from crazybilliards.kinetic.requirements import output_times, require_chain
 from crazybilliards.kinetic.starts import check_start, read_start

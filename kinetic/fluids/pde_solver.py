@@ -7,6 +7,7 @@ because trackers that read the clock would make two equal runs differ.
 
 import logging
 from collections.abc import Callable, Mapping
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -39,10 +40,6 @@ class FlowFields(NamedTuple):
     diverged: bool = False
 
 
-class _Rates(NamedTuple):
-    data: Array
-
-
 class Flow(PDEBase):
     """Equations of motion given as the rates of change of fields (number, cells) at a time."""
 
@@ -57,7 +54,7 @@ class Flow(PDEBase):
     def evolution_rate(self, state: Any, t: float = 0) -> Any:
         """Return the rates with the one attribute of py-pde's slow fields that it reads."""
         # The values lie in an array with cells around them, for which a rate would compile again.
-        return _Rates(self.rate(np.ascontiguousarray(state.data), t))
+        return SimpleNamespace(data=self.rate(np.ascontiguousarray(state.data), t))
 
 
 def solve(
