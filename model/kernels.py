@@ -109,8 +109,11 @@ def _let_it_fail(disk: Any) -> None:
         compiled = load(*arguments)
         if compiled is None and _to_announce.get():
             _to_announce.set(False)
-            message = "crazybilliards: compiling the kernels, once (they are cached) ..."
-            print(message, file=sys.stderr, flush=True)
+            print(
+                "crazybilliards: compiling the kernels, once (they are cached) ...",
+                file=sys.stderr,
+                flush=True,
+            )
         return compiled
 
     disk.load_overload, disk.save_overload = load_or_announce, attempt(disk.save_overload)

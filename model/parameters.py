@@ -21,7 +21,6 @@ KNOWN = frozenset(
 WALLS_AND_MASSES = frozenset({"box", "wall_restitution", "mass_ratio"})
 
 _positive = partial(check_real, positive=True)
-_count = partial(check_integer, least=1, most=10**9)  # rods, 8 GB an array
 
 
 def _parameter(
@@ -35,7 +34,9 @@ def _parameter(
 class Parameters:
     """The parameters of a chain, each checked in turn; :class:`Chain` documents them."""
 
-    size: int = _parameter(100, "Number of rods L", check=_count)
+    size: int = _parameter(  # of which an array takes 8 GB at most
+        100, "Number of rods L", check=partial(check_integer, least=1, most=10**9)
+    )
     restitution: float = _parameter(
         1.0, "Restitution e: below 1 dissipative, above 1 anti-dissipative"
     )

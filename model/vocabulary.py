@@ -184,17 +184,17 @@ def result(
         error = "standard error of " * name.endswith("_error")
         dataset[name].attrs |= described(error + meaning, unit)
     if "separation" in dataset.coords and (reach := int(dataset.separation[-1])) < chain.size - 1:
-        cut = f"cut at {reach} of {chain.size - 1}; Covariances(separations=...) sets where"
-        dataset["separation"].attrs["comment"] = cut
-    dataset.attrs["source"] = source
-    dataset.attrs["status"] = status
-    for name, value in {"end_time": end_time, "residual": residual}.items():
-        if value is not None:
-            dataset.attrs[name] = float(value)
-    dataset.attrs["provenance"] = json.dumps(
-        {"chain": chain.parameters(), **method, "versions": _versions()}, sort_keys=True
+        dataset["separation"].attrs["comment"] = (
+            f"cut at {reach} of {chain.size - 1}; Covariances(separations=...) sets where"
+        )
+    numbers = {"end_time": end_time, "residual": residual}
+    provenance = {"chain": chain.parameters(), **method, "versions": _versions()}
+    return dataset.assign_attrs(
+        source=source,
+        status=status,
+        **{name: float(value) for name, value in numbers.items() if value is not None},
+        provenance=json.dumps(provenance, sort_keys=True),
     )
-    return dataset
 
 
 def described(meaning: str, unit: str) -> dict[str, str]:

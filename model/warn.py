@@ -31,5 +31,7 @@ def warn_if_diverged(result: Any, what: str, over_time: bool = False) -> None:
     if (status == "diverged").any() and not over_time:
         end = result.attrs.get("end_time")  # of a single chain
         at = "see the status" if end is None else f"after t = {end:g}"
-        text = f"{what}: a chain diverged ({at}), and averages over time include its growth"
-        warn_user(text, DivergedWarning)
+        warn_user(
+            f"{what}: a chain diverged ({at}), and averages over time include its growth",
+            DivergedWarning,
+        )
