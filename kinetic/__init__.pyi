@@ -1,5 +1,5 @@
 from .accuracy import UnmeasuredWarning as UnmeasuredWarning
-from .exact.breathing import breathing_cloud as breathing_cloud
+from .exact.motion import breathing_cloud as breathing_cloud
 from .exact.gibbs_measure import (
     equilibrium as equilibrium,
     equilibrium_states as equilibrium_states,

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -55,24 +55,20 @@ class UnmeasuredWarning(UserWarning):
     """The error of a theory was not measured for chains like this one."""
 
 
-def warn_if_unmeasured(theory: str, error: float) -> None:
+def warn_if_unmeasured(theory: str, error: float, what: str = "chains like this one") -> None:
     """Tell the caller of a theory, once, that its error is not known for this chain."""
     if math.isnan(error):
         warn_user(
-            f"the error of {theory} was not measured for chains like this one (it is NaN)",
-            UnmeasuredWarning,
+            f"the error of {theory} was not measured for {what} (it is NaN)", UnmeasuredWarning
         )
 
 
-def expected(theory: str, chain: Chain) -> Accuracy:
-    """Return the errors of a stationary theory, named by its function, if it was ever measured."""
-    if theory == "equilibrium":
-        return Accuracy(0.0, 0.0, 0.0, 0.0, 0.0, 0.0 if chain.box else math.nan)
-    of = {"force_balance": _of_force_balance, "steady_state": _of_steady_state}
-    return of[theory](chain) if theory in of else Accuracy()
+def errors_of_equilibrium(chain: Chain) -> Accuracy:
+    """Return the errors of ``equilibrium``, which is exact; without walls there is no force."""
+    return Accuracy(0.0, 0.0, 0.0, 0.0, 0.0, 0.0 if chain.box else math.nan)
 
 
-def _of_force_balance(chain: Chain) -> Accuracy:
+def errors_of_force_balance(chain: Chain) -> Accuracy:
     """Return the errors of ``force_balance`` at e = 1, where they were measured."""
     if chain.box:
         density, force = (_IN_A_BOX, 0.0) if chain.exchangeable else (math.nan, math.nan)
@@ -87,7 +83,7 @@ def _of_force_balance(chain: Chain) -> Accuracy:
     return Accuracy(velocity_width=0.0, border=0.0, mean_displacement=moved, density=density)
 
 
-def _of_steady_state(chain: Chain) -> Accuracy:
+def errors_of_steady_state(chain: Chain) -> Accuracy:
     """Return the errors of ``steady_state``: the largest of the measured chains nearby."""
     if (chain.restitution == 1 or chain.size == 1) and chain.wall_restitution == 1:
         if chain.spring == "quadratic" and chain.lattice_gap:
@@ -153,28 +149,21 @@ def _is_inside(value: float, least: float, most: float) -> bool:
     return least - _SAME * abs(least) <= value <= most + _SAME * abs(most)
 
 
-class Release(NamedTuple):
-    """A start in time from the equilibrium at e = 1."""
-
-    stretch: float  # of y
-    shift: float  # in thermal lengths
-    heat: float  # W^2 over the free one
-
-
-def expected_in_time(chain: Chain, release: Release | None) -> float:
+def expected_in_time(chain: Chain, stretch: float, shift: float, heat: float) -> float:
     """Return the relative error of the kinetic energy of ``hydrodynamics`` with a temperature.
 
-    It is that of any time after a ``release``; None: another start. NaN: not measured.
+    It is that of any time after a start from the equilibrium at e = 1, whose y were multiplied by
+    ``stretch`` and moved by ``shift`` thermal lengths, with W^2 = ``heat`` times the free one. NaN:
+    not measured.
     """
-    known = chain.stiffness > 0 and chain.box == 0 and chain.mass_ratio == 1
-    if not known or release is None:
+    if chain.stiffness == 0 or chain.box or chain.mass_ratio != 1:
         return math.nan
     if chain.restitution == 1 and chain.gap == 0 and chain.spring == "linear":
         return 0.0
     _, place = kind_and_place(chain)
-    place |= {"stretch": release.stretch, "shift": release.shift}
+    place |= {"stretch": stretch, "shift": shift}
     inside = all(_is_inside(place[axis], *ends) for axis, ends in _IN_TIME.items())
-    if not inside or abs(release.heat - 1) > 2 * _SAME:
+    if not inside or abs(heat - 1) > 2 * _SAME:
         return math.nan
     rows = _table("relaxation")
     fits = rows.n == chain.potential_exponent
@@ -200,6 +189,4 @@ def _around(quantity: str, place: Mapping[str, float]) -> float:
 
 @cache
 def _table(name: str) -> pd.DataFrame:
-    path = files("crazybilliards.kinetic") / "measured" / f"{name}.csv"
-    with path.open(encoding="utf-8") as file:
-        return pd.read_csv(file)
+    return pd.read_csv(Path(__file__).with_name("measured") / f"{name}.csv")

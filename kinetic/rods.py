@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 from scipy.special import ndtr, ndtri
 
-from crazybilliards.kinetic.accuracy import Accuracy, expected
+from crazybilliards.kinetic.accuracy import Accuracy, errors_of_equilibrium
 from crazybilliards.kinetic.exact.places import (
     RodPlaces,
     are_resolved,
@@ -104,7 +104,7 @@ def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
     )
     by_labels = json.loads(theory.attrs["provenance"]).get("theory") == BY_LABELS
     exact = by_labels and not math.isnan(theory.attrs.get("density_model_error", math.nan))
-    stated = (expected("equilibrium", chain) if exact else Accuracy()).named()
+    stated = (errors_of_equilibrium(chain) if exact else Accuracy()).named()
     errors = {name: value for name, value in stated.items() if name in theory.attrs}
     return result.assign_attrs(density_of=OF_RODS, **errors)
 

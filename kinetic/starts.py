@@ -12,7 +12,7 @@ import xarray as xr
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from scipy.optimize import elementwise
 
-from crazybilliards.kinetic.exact.points import fields_of_points
+from crazybilliards.kinetic.exact.motion import fields_of_points
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.statics.label_closure import fluid_reach, stationary
 from crazybilliards.model import WALLS_AND_MASSES, Array, Chain, chain_of

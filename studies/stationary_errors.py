@@ -267,7 +267,7 @@ def row(folder: Path, chain: cb.Chain) -> list[object]:
 def beyond(folder: Path, chain: cb.Chain) -> list[object]:
     """Return a chain that was drawn at random, and each error beside the stated one."""
     kind, place = kind_and_place(chain)
-    stated = accuracy.expected("steady_state", chain)._asdict()
+    stated = accuracy.errors_of_steady_state(chain)._asdict()
     found = errors(simulated(folder, chain))
     cells = (
         f"{found[q][0]:.4f} ± {found[q][1]:.4f} of {stated[q]:.4f}" if q in found else ""

@@ -20,8 +20,7 @@ from crazybilliards.kinetic import (
     hydrodynamics,
     rod_by_rod,
 )
-from crazybilliards.kinetic.exact.breathing import breathing_cloud
-from crazybilliards.kinetic.exact.points import gas_of_points, points_of
+from crazybilliards.kinetic.exact.motion import breathing_cloud, gas_of_points, points_of
 from crazybilliards.kinetic.fluids.stated_errors import has_one_mass
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.kinetic.starts import gathered, wave

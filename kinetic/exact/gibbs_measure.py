@@ -40,7 +40,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.special import gammaln
 
-from crazybilliards.kinetic.accuracy import expected
+from crazybilliards.kinetic.accuracy import errors_of_equilibrium
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import WALLS_AND_MASSES, Array, Chain
 from crazybilliards.model.checks import check_integer, require_memory
@@ -105,7 +105,7 @@ def equilibrium(chain: Chain) -> xr.Dataset:
         source="theory",
         method={"theory": "exact equilibrium"},
         residual=float(np.ptp(log_z)),
-    ).assign_attrs(expected("equilibrium", chain).named(), density_of=OF_RODS)
+    ).assign_attrs(errors_of_equilibrium(chain).named(), density_of=OF_RODS)
 
 
 def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Dataset:
@@ -153,9 +153,12 @@ def equilibrium_states(chain: Chain, replicas: int, seed: Seed = 0) -> xr.Datase
 
 def check_equilibrium(chain: Chain) -> None:
     """Raise the ValueError that :func:`equilibrium` would raise, without the computation."""
-    remedy = "; chain.replace(restitution=1) is the elastic chain"
     require_chain(
-        chain, "the exact equilibrium", elastic=True, remedy=remedy, knows=WALLS_AND_MASSES
+        chain,
+        "the exact equilibrium",
+        elastic=True,
+        knows=WALLS_AND_MASSES,
+        remedy="; chain.replace(restitution=1) is the elastic chain",
     )
     require_resolved(chain, float(chain.reduced_anchors[-1]))
     _window(chain)

@@ -4,7 +4,7 @@ Equal elastic rods only exchange their velocities. Without springs, in a box and
 coordinate, each point of such a gas moves as if it were alone. The slowest wave of density,
 k = pi/(X - 2RL), then decays exactly as
 
-    exp(-k^2 M(t)/2),      G = gamma/m,      M(t) as in :mod:`crazybilliards.kinetic.exact.points`,
+    exp(-k^2 M(t)/2),      G = gamma/m,      M(t) as in :mod:`crazybilliards.kinetic.exact.motion`,
 
 while small deviations of the fluid's density r, velocity w, temperature h and heat flux f obey
 
@@ -29,8 +29,8 @@ import math
 import numpy as np
 from scipy.linalg import expm
 
-from crazybilliards.kinetic.accuracy import Release, UnmeasuredWarning, expected_in_time
-from crazybilliards.kinetic.exact.points import free_spread
+from crazybilliards.kinetic.accuracy import expected_in_time, warn_if_unmeasured
+from crazybilliards.kinetic.exact.motion import free_spread
 from crazybilliards.kinetic.fluids.pde_solver import FlowFields
 from crazybilliards.kinetic.starts import Start
 from crazybilliards.kinetic.statics.label_closure import stationary
@@ -53,14 +53,11 @@ def errors_to_state(
     duration, times = float(times[-1]), times[: len(fields.label)]
     errors = {"label_model_error": label_model_error(chain, start, fields, times)}
     if thermal:
-        error = expected_in_time(chain, _released_from(chain, fields))
+        release = _released_from(chain, fields)
+        error = expected_in_time(chain, *release) if release else math.nan
         errors["kinetic_energy_model_error"] = error
-        if math.isnan(error) and chain.restitution != 1:
-            warn_user(
-                "the error of the kinetic energy was not measured for chains and starts like these "
-                "(it is NaN)",
-                UnmeasuredWarning,
-            )
+        if chain.restitution != 1:
+            warn_if_unmeasured("the kinetic energy", error, "chains and starts like these")
     wave = 0.0
     if has_one_mass(chain):
         moments = 2 if not thermal else 3 if fields.heat_flux is None else 4
@@ -94,8 +91,11 @@ def _warn_of_streams(chain: Chain, start: Start, error: float, *, thermal: bool)
         )
 
 
-def _released_from(chain: Chain, fields: FlowFields) -> Release | None:
-    """Return how the equilibrium at e = 1 was changed; None for any other start."""
+def _released_from(chain: Chain, fields: FlowFields) -> tuple[float, float, float] | None:
+    """Return how the equilibrium at e = 1 was changed: the arguments of ``expected_in_time``.
+
+    None for any other start.
+    """
     s, W, L = chain.thermal_length, chain.free_velocity_width, chain.size
     x, density, label, flow, variance = (
         each[0] if each.ndim == 2 else each
@@ -114,7 +114,7 @@ def _released_from(chain: Chain, fields: FlowFields) -> Release | None:
     moves = np.abs(flow[inside]).max() > _LIKE * W
     if moves or off.max() > _LIKE * weight.max() or np.ptp(heat) > _LIKE * heat.mean():
         return None
-    return Release(float(stretch), float(shift), float(heat.mean()))
+    return float(stretch), float(shift), float(heat.mean())
 
 
 def has_one_mass(chain: Chain) -> bool:

@@ -22,15 +22,16 @@ with the force P ~ g^-alpha of a gas that cools. h_gg of neighbouring gaps and t
 which squares of waves relax, follow from h' itself.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
+from scipy import optimize
 
 from crazybilliards.kinetic.gas.cells import Cells, at_distance, make_cells, means
 from crazybilliards.kinetic.gas.closure import Closure, implied
 from crazybilliards.kinetic.gas.descriptions import Descriptions, Labels, MeanState
 from crazybilliards.kinetic.gas.driven import driven_points
-from crazybilliards.kinetic.gas.fixed_point import find_fixed_point
 from crazybilliards.kinetic.gas.fluctuations import (
     Background,
     LinearResponse,
@@ -44,7 +45,12 @@ from crazybilliards.model import Array, Chain
 _CELLS_OF_DISPLACEMENTS = 130
 _WAY = 0.9, 0.75, 0.5, 0.2  # restitutions that smaller ones are reached from
 _AGREEMENT, _AGREEMENT_ON_THE_WAY = 1e-3, 0.05
+_KEPT = 5  # steps of Anderson's acceleration
+_MIXED = 0.5  # share of the residual in a step
+_MOST_ITERATIONS = 60
 _AGREEMENT_OF_STRESS = 1e-3  # of h_gg and ln tau; W_x changes by less than a tenth of it
+
+State = TypeVar("State")
 
 
 class Fluctuations(NamedTuple):
@@ -84,8 +90,16 @@ def mean_field(chain: Chain, cells: Cells) -> Steady:
         off, flux = found.residual, chain.size * flux
     else:
         mean = descriptions.solve(medium, closure)
-    width = descriptions.widths(medium, mean)
-    return Steady(medium, cells, mean, width, closure, labels, residual=off, flux=flux)
+    return Steady(
+        medium,
+        cells,
+        mean,
+        descriptions.widths(medium, mean),
+        closure,
+        labels,
+        residual=off,
+        flux=flux,
+    )
 
 
 def in_agreement(chain: Chain, cells: Cells) -> Steady:
@@ -119,9 +133,17 @@ def in_agreement(chain: Chain, cells: Cells) -> Steady:
     responses = linear_response(background), relaxing
     if (growth := max(each.largest_growth() for each in responses)) > 0:
         raise NoSteadyStateError(f"the state is not stable: deviations grow at the rate {growth:g}")
-    found, labels = Fluctuations(background, pairs, displaced), descriptions.labels
-    width = descriptions.widths(medium, mean)
-    return Steady(medium, cells, mean, width, closure, labels, found, end.residual, iterations)
+    return Steady(
+        medium,
+        cells,
+        mean,
+        descriptions.widths(medium, mean),
+        closure,
+        descriptions.labels,
+        Fluctuations(background, pairs, displaced),
+        end.residual,
+        iterations,
+    )
 
 
 def _background(
@@ -206,3 +228,56 @@ def _memory(state: Background, pairs: PairCovariance) -> float:
     displacement = (T / stiffness) @ local + moved
     D, K = state.medium.damping / np.minimum(velocity, 1), velocity / displacement
     return float(np.average((1 / D + D / K) / 2, weights=square[:, 0] * moved))
+
+
+class FixedPoint(NamedTuple, Generic[State]):
+    """Where x = image(x), what was found there, the largest |image(x) - x|, and evaluations."""
+
+    x: Array
+    state: State
+    residual: float
+    evaluations: int
+
+
+def find_fixed_point(
+    image: Callable[[Array], tuple[Array, State]], start: Array, tolerance: float
+) -> FixedPoint[State]:
+    """Find x = image(x) by Anderson's acceleration; an image comes with a state.
+
+    It agrees to ``tolerance`` in the largest component.
+    """
+    found: list[FixedPoint[State]] = []
+
+    def off(x: Array) -> Array:
+        other, state = image(x)
+        evaluations = found.pop().evaluations if found else 0
+        found.append(FixedPoint(x, state, _largest(other - x), evaluations + 1))
+        return other - x
+
+    try:
+        agreed = optimize.root(
+            off,
+            start,
+            method="anderson",
+            options={
+                "fatol": tolerance,
+                "tol_norm": _largest,
+                "maxiter": _MOST_ITERATIONS - 1,  # after the first
+                "line_search": None,  # it would try states far from the last one
+                "jac_options": {"alpha": _MIXED, "M": _KEPT},
+            },
+        ).success
+    except ValueError:  # also of arrays that are not finite
+        if not found:
+            raise
+        agreed = False  # a step to where there is no image
+    if not agreed:
+        raise NoSteadyStateError(
+            f"no agreement after {found[-1].evaluations} iterations: what is looked for still "
+            f"changes by {found[-1].residual:.2g}"
+        )
+    return found[-1]
+
+
+def _largest(residual: Array) -> float:
+    return float(np.abs(residual).max())

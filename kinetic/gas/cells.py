@@ -61,13 +61,10 @@ def _between(ends: Array, beyond: float, walled: bool) -> Cells:
     """Return cells between ends. ``beyond``: rods from the outermost ends to a wall."""
     ends = (ends + ends[-1] - ends[::-1]) / 2  # symmetric but for rounding
     rods, centres, labels = np.diff(ends), means(ends), ends[1:-1]
-    cells = Cells(rods, centres, labels, np.diff(centres), labels, np.diff(centres), walled)
-    if not walled:
-        return cells
-    return cells._replace(
-        all_labels=np.pad(labels, 1, constant_values=(0.0, rods.sum())),
-        all_distances=np.pad(cells.distances, 1, constant_values=rods[0] / 2 + beyond),
-    )
+    distances, more = np.diff(centres), 1 if walled else 0
+    all_labels = np.pad(labels, more, constant_values=(0.0, rods.sum()))
+    all_distances = np.pad(distances, more, constant_values=rods[0] / 2 + beyond)
+    return Cells(rods, centres, labels, distances, all_labels, all_distances, walled)
 
 
 def means(values: Array) -> Array:

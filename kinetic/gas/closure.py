@@ -73,9 +73,23 @@ _NEIGHBOUR = 1.0  # rod
 _BEYOND = 2  # cells between two rods that have not hit one another
 _LEAST = 0.02  # bound of Theta/T, b and 1 - K h_uu on the way; at the end they must be far from it
 
-_RESTITUTIONS = 0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1
-_THOUSANDTHS = 482, 580, 678, 771, 853, 920, 970, 1002, 1011, 1016, 1017, 1015, 1010, 1000
-SQUARES = {e: K / 1000 for e, K in zip(_RESTITUTIONS, _THOUSANDTHS, strict=True)}  # K^2
+# K^2 of restitutions.
+SQUARES = {
+    0: 0.482,
+    0.1: 0.580,
+    0.2: 0.678,
+    0.3: 0.771,
+    0.4: 0.853,
+    0.5: 0.920,
+    0.6: 0.970,
+    0.7: 1.002,
+    0.75: 1.011,
+    0.8: 1.016,
+    0.85: 1.017,
+    0.9: 1.015,
+    0.95: 1.010,
+    1: 1.000,
+}
 _SQUARE = PchipInterpolator(list(SQUARES), list(SQUARES.values()))
 
 

@@ -23,7 +23,6 @@ from typing import NamedTuple
 from crazybilliards.kinetic.accuracy import warn_if_unmeasured
 from crazybilliards.kinetic.requirements import require_chain
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import check_chain
 
 _STRONGEST = 10.0  # damping
 _SIMULATED = 1.955  # damping, and
@@ -66,7 +65,7 @@ def critical_size(chain: Chain) -> CriticalValue:
 
 def _require_drive(chain: Chain) -> None:
     """Raise if the chain has no critical size."""
-    check_chain(chain)
+    require_chain(chain, "the critical size", steady=False)
     if chain.restitution <= 1:
         raise ValueError(
             "every size has a steady state unless restitution is above 1, got "
@@ -77,7 +76,6 @@ def _require_drive(chain: Chain) -> None:
             "with quadratic springs and e > 1 there is no critical size: rods collide the more "
             "often the faster they are, and a fluctuation large enough always runs away"
         )
-    require_chain(chain, "the critical size", steady=False)
     for name in ("damping", "stiffness"):
         if getattr(chain, name) == 0:
             raise ValueError(f"{name}=0: no size has a steady state with e > 1")

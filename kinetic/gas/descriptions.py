@@ -53,9 +53,23 @@ from crazybilliards.kinetic.gas.mean_state import (
 )
 from crazybilliards.model import Array, Chain
 
-_SPACINGS = 0, 0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 2.5, 3, 4, 5, 8  # x
-_SHARES = 0, 493, 972, 1438, 2328, 3163, 4315, 5971, 7305, 8329, 9060, 9792, 9973, 10_000
-VARIANCES = {x: v / 10_000 for x, v in zip(_SPACINGS, _SHARES, strict=True)}  # v, to 1e-4
+# v, to 1e-4, of spacings x.
+VARIANCES = {
+    0: 0.0,
+    0.1: 0.0493,
+    0.2: 0.0972,
+    0.3: 0.1438,
+    0.5: 0.2328,
+    0.7: 0.3163,
+    1: 0.4315,
+    1.5: 0.5971,
+    2: 0.7305,
+    2.5: 0.8329,
+    3: 0.9060,
+    4: 0.9792,
+    5: 0.9973,
+    8: 1.0,
+}
 _VARIANCE = PchipInterpolator(list(VARIANCES), list(VARIANCES.values()))
 _MOST = 1000  # rods of a gap whose exact state is computed; longer chains have the same ends
 _LEAST = 1e-12  # of phi
@@ -132,11 +146,11 @@ class Descriptions:
     def solve(self, medium: Medium, closure: Closure) -> MeanState:
         """Return the mean state with a closure at the contacts."""
         cells, labels = self.cells, self.labels
-        collective = closure.at(cells.contacts, cells.centres).collective
-        spread = collective / self.slope if medium.stiffness else 0 * self.slope
+        shared = closure.at(cells.contacts, cells.centres).collective
+        spread = shared / self.slope if medium.stiffness else 0 * self.slope
         states = []
         if labels is None or cells.walled or not self.mean_field:
-            states.append(self._rods(medium, closure, spread))
+            states.append(self._rods(medium, closure, shared, spread))
         if labels and not cells.walled:  # the last: its places are those of labels
             states.append(self._points(labels, medium, closure, spread))
         state = MeanState(*(np.mean(fields, axis=0) for fields in zip(*states, strict=True)))
@@ -148,10 +162,9 @@ class Descriptions:
             self.slope = mean_slope(medium, x, state.temperature, gap, spread)
         return state
 
-    def _rods(self, medium: Medium, closure: Closure, spread: Array) -> MeanState:
-        """Return the state on cells of whole rods. ``spread``: h_uu at the cells."""
+    def _rods(self, medium: Medium, closure: Closure, shared: Array, spread: Array) -> MeanState:
+        """Return the state on cells of whole rods. ``shared``: h, and ``spread``: h_uu at cells."""
         cells, labels = self.cells, self.labels
-        shared = closure.at(cells.contacts, cells.centres).collective
         share = 1.0 if labels else contact_share(self.chain, medium, cells, self.T + shared)
 
         def forces(T: Array) -> Balance:

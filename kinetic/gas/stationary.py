@@ -25,7 +25,7 @@ import numpy as np
 import xarray as xr
 from threadpoolctl import threadpool_limits
 
-from crazybilliards.kinetic.accuracy import Accuracy, expected, warn_if_unmeasured
+from crazybilliards.kinetic.accuracy import Accuracy, errors_of_steady_state, warn_if_unmeasured
 from crazybilliards.kinetic.exact.places import (
     are_resolved,
     at_temperature,
@@ -112,7 +112,7 @@ def steady_state(chain: Chain, *, correlations: bool = True) -> xr.Dataset:
     state = _in_vocabulary(chain, found)
     # Below e = 1 the mean field was not measured.
     measured = correlations or chain.restitution >= 1
-    errors = expected("steady_state", chain) if measured else Accuracy()
+    errors = errors_of_steady_state(chain) if measured else Accuracy()
     warn_if_unmeasured("the steady state of the gas", errors.velocity_width)
     return state.assign_attrs(errors.named())
 

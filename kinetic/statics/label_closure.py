@@ -35,7 +35,7 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 from scipy.special import wrightomega
 
-from crazybilliards.kinetic.accuracy import expected
+from crazybilliards.kinetic.accuracy import errors_of_force_balance
 from crazybilliards.model import Array, Chain, spring
 from crazybilliards.model.grid import position_grid
 from crazybilliards.model.vocabulary import result
@@ -64,7 +64,7 @@ def solve_label_closure(chain: Chain) -> xr.Dataset:
         wall_force=np.full(2, chain.temperature * state.at_walls * chain.size),
         theory=BY_LABELS,
         residual=state.residual,
-    ).assign_attrs(expected("force_balance", chain).named())
+    ).assign_attrs(errors_of_force_balance(chain).named())
 
 
 def closed_by_labels(

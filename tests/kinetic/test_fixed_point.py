@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crazybilliards.kinetic.gas.fixed_point import find_fixed_point
+from crazybilliards.kinetic.gas.agreement import find_fixed_point
 from crazybilliards.kinetic.gas.mean_state import NoSteadyStateError
 
 

@@ -6,7 +6,7 @@ import xarray as xr
 from pde import MemoryStorage
 
 from crazybilliards.kinetic import compressed, displaced, equilibrium, force_balance, hydrodynamics
-from crazybilliards.kinetic.exact.breathing import breathing_cloud
+from crazybilliards.kinetic.exact.motion import breathing_cloud
 from crazybilliards.kinetic.fluids import eulerian_frame
 from crazybilliards.model import Chain
 

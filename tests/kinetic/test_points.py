@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from crazybilliards.kinetic import force_balance, hydrodynamics
-from crazybilliards.kinetic.exact.points import gas_of_points, points_of
+from crazybilliards.kinetic.exact.motion import gas_of_points, points_of
 from crazybilliards.kinetic.starts import gathered, wave
 from crazybilliards.model import Chain
 

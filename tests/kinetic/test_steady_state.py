@@ -7,7 +7,7 @@ import pytest
 
 from crazybilliards.comparison import deviation, smooth
 from crazybilliards.kinetic import equilibrium, steady_state
-from crazybilliards.kinetic.gas import agreement, fixed_point, mean_state
+from crazybilliards.kinetic.gas import agreement, mean_state
 from crazybilliards.kinetic.gas.cells import make_cells
 from crazybilliards.kinetic.gas.mean_state import Medium, mean_slope
 from crazybilliards.kinetic.gas.stationary import rods_of
@@ -207,7 +207,7 @@ def test_cells_of_several_rods_change_little(changes):
 
 
 def test_no_agreement_is_an_error_with_a_reason(monkeypatch):
-    monkeypatch.setattr(fixed_point, "_MOST_ITERATIONS", 2)
+    monkeypatch.setattr(agreement, "_MOST_ITERATIONS", 2)
     with pytest.raises(ValueError, match=r"no steady state that could be.*after 2 iterations"):
         steady_state(Chain(size=8, restitution=0.75))
 
