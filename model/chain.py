@@ -29,9 +29,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from crazybilliards.model import spring
 from crazybilliards.model.arrays import check_numbers
-from crazybilliards.model.checks import shown
+from crazybilliards.model.checks import check_arguments, shown, with_hints
 from crazybilliards.model.parameters import KNOWN, Parameters
-from crazybilliards.model.words import check_arguments, with_hints
 
 _TAIL = 40.0  # exp(-40) = 4e-18: nothing that double precision sees lies beyond U(d) = 40 T
 

@@ -1,9 +1,12 @@
-"""Saving and loading results: NetCDF files, written atomically and checked when read.
+"""Saving and loading results: NetCDF files, written atomically and checked when read; locks.
 
 A file is an ordinary NetCDF-4 file followed by a trailer with the SHA-256 of everything before
 it (NetCDF readers ignore what follows the data). :func:`load` compares the two before any NetCDF
 library sees the bytes, so a damaged or truncated file can never give a wrong result. The sweeps of
 version 0.5 and before are classic NetCDF, which is read, too.
+
+By a lock one process at a time keeps a checkpoint or fills a folder. The operating system frees it
+when the process ends, however it ends (package filelock).
 """
 
 import errno
@@ -12,7 +15,8 @@ import io
 import os
 import secrets
 import sys
-from contextlib import nullcontext
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -21,9 +25,9 @@ import h5py
 import netCDF4
 import numpy as np
 import xarray as xr
+from filelock import FileLock, Timeout
 
 from crazybilliards.model.checks import check_path, require_memory, shown
-from crazybilliards.model.locks import hidden_beside
 from crazybilliards.model.warn import warn_if_diverged
 
 _CLASSIC, _NETCDF_4 = b"CDF", b"\x89HDF"  # the first bytes of a file
@@ -163,7 +167,7 @@ def write_atomically(path: Path, content: bytes | None) -> None:
     names ``path``.
     """
     target = Path(os.path.realpath(path))
-    unfinished = hidden_beside(path, f"{secrets.token_hex(4)}.part")
+    unfinished = _hidden_beside(path, f"{secrets.token_hex(4)}.part")
     try:
         if target.is_symlink() or (target.exists() and not target.is_file()):
             raise OSError(errno.EISDIR, "a folder, a device or a link to itself, not a file")
@@ -179,6 +183,37 @@ def write_atomically(path: Path, content: bytes | None) -> None:
             unfinished.unlink(missing_ok=True)
     except OSError as error:
         raise OSError(error.errno, error.strerror or str(error), str(path)) from error
+
+
+def _hidden_beside(path: Path, ending: str) -> Path:
+    """Return a name beside a file, of a link the file that it names; a hash if that is long."""
+    path = Path(os.path.realpath(path))
+    long = len(os.fsencode(path.name)) > 120  # bytes; an encrypted disk takes 143, others 255
+    name = hashlib.sha256(os.fsencode(path.name)).hexdigest() if long else path.name
+    return path.with_name(f".{name}.{ending}")
+
+
+@contextmanager
+def locked(path: Path) -> Iterator[None]:
+    """Hold the lock of a file, or of an existing folder, within the ``with`` block.
+
+    Raises a BlockingIOError if another process, or another thread of this one, holds the lock.
+    """
+    file = path / ".lock" if path.is_dir() else _hidden_beside(path, "lock")
+    file.touch()  # filelock would wait where no file can be made
+    try:
+        with FileLock(file, timeout=0.1, poll_interval=0.01):
+            try:
+                yield
+            finally:
+                with suppress(PermissionError):  # on Windows, where filelock removes it
+                    file.unlink(missing_ok=True)
+    except Timeout as error:
+        raise BlockingIOError(
+            errno.EAGAIN,
+            f"in use by another process, which holds {file.name}; wait until it has ended",
+            str(path),
+        ) from error
 
 
 def make_folder(path: Path) -> None:

@@ -17,9 +17,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from crazybilliards.model.chain import Chain
-from crazybilliards.model.checks import shown
+from crazybilliards.model.checks import meant, shown
 from crazybilliards.model.warn import warn_if_diverged
-from crazybilliards.model.words import meant
 
 # name: (meaning, unit). R length, M mass, t_0 = sqrt(M/k) time.
 VOCABULARY = {

@@ -10,11 +10,10 @@ from loky import cpu_count
 from numpy.typing import ArrayLike
 
 from crazybilliards.model import Chain
-from crazybilliards.model.checks import check_integer, check_path, check_real
+from crazybilliards.model.checks import check_integer, check_path, check_real, with_hints
 from crazybilliards.model.kernels import announced
 from crazybilliards.model.randomness import Seed, seed_of
 from crazybilliards.model.warn import DivergedError, DivergedWarning, warn_user
-from crazybilliards.model.words import with_hints
 from crazybilliards.particles.dynamics import Stepper
 from crazybilliards.particles.laws.law import Method
 from crazybilliards.particles.observers import Observer, check_observers, find_observers

@@ -28,8 +28,7 @@ def writing_to(output: Path | None, *names: str) -> Iterator[None]:
     if output is None:
         yield
         return
-    from crazybilliards.model.locks import locked
-    from crazybilliards.model.storage import make_folder, write_atomically
+    from crazybilliards.model.storage import locked, make_folder, write_atomically
 
     made = [folder for folder in (output, *output.resolve().parents) if not folder.exists()]
     make_folder(output)

@@ -25,10 +25,9 @@ from threadpoolctl import threadpool_limits
 from crazybilliards.comparison.stationary_theories import THEORIES
 from crazybilliards.kinetic.accuracy import UnmeasuredWarning
 from crazybilliards.model import Chain, DivergedError, DivergedWarning, load
-from crazybilliards.model.checks import check_choice
+from crazybilliards.model.checks import check_arguments, check_choice
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.storage import load_attributes, netcdf
-from crazybilliards.model.words import check_arguments
 from crazybilliards.particles import ShortRunWarning, simulate
 from crazybilliards.particles.simulation import make_run
 

@@ -20,10 +20,9 @@ from crazybilliards.comparison.sweeps.case import (
     stored_parameters,
 )
 from crazybilliards.model import Chain, load
-from crazybilliards.model.checks import as_written, check_path, is_list, shown
+from crazybilliards.model.checks import as_written, check_arguments, check_path, is_list, shown
 from crazybilliards.model.vocabulary import ATTRIBUTES, described, require
 from crazybilliards.model.warn import warn_user
-from crazybilliards.model.words import check_arguments
 
 _CHAIN = [parameter.name for parameter in fields(Chain)]
 _TEXTS = ("status", "provenance", "file")  # are always variables

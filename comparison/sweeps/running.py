@@ -26,10 +26,9 @@ from tqdm import tqdm
 from crazybilliards.comparison.sweeps.case import Case, compute
 from crazybilliards.comparison.sweeps.grid import Sweep
 from crazybilliards.model.checks import check_integer, check_path
-from crazybilliards.model.locks import locked
 from crazybilliards.model.process import end_with_parent
 from crazybilliards.model.progress import progress_bar
-from crazybilliards.model.storage import make_folder, write_sealed
+from crazybilliards.model.storage import locked, make_folder, write_sealed
 from crazybilliards.model.warn import warn_user
 from crazybilliards.particles import ShortRunWarning
 

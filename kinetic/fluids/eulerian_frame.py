@@ -281,5 +281,15 @@ def _on_grid(chain: Chain, faces: Array, solution: Array, constants: Constants) 
         rod_velocities[i] = np.interp(rods[i], x, velocity[i])
         unsteadiness[i] = _unsteadiness(fields, constants)
         energy[i] = fields[0] @ (v**2 + heat) / fields[0].sum()
-    fields = (density, label, velocity, variance, rods, rod_velocities)
-    return FlowFields(x, *fields, middle.size, unsteadiness, energy)
+    return FlowFields(
+        x,
+        density,
+        label,
+        velocity,
+        variance,
+        rods,
+        rod_velocities,
+        middle.size,
+        unsteadiness,
+        energy,
+    )

@@ -121,9 +121,19 @@ def on_positions(
             heat[i] = L * W**3 / s * np.interp(x, middle, flux[i], left=0.0, right=0.0)
     rods = s * _continued(rest, moved, rod_nodes)[0] + 2 * R * chain.rank
     rod_velocities = W * _continued(rest, flow, rod_nodes)[0]
-    fields = (density, label, velocity, variance, rods, rod_velocities)
-    size, hot = cells.labels.size, heat if flux is not None else None
-    return FlowFields(x, *fields, size, unsteadiness, energy, hot)
+    return FlowFields(
+        x,
+        density,
+        label,
+        velocity,
+        variance,
+        rods,
+        rod_velocities,
+        cells.labels.size,
+        unsteadiness,
+        energy,
+        None if flux is None else heat,
+    )
 
 
 def _heat_flux(chain: Chain, cells: LabelCells, q: Array, distance: Array) -> Array:

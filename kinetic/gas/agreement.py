@@ -67,13 +67,17 @@ class Steady(NamedTuple):
     medium: Medium
     cells: Cells
     mean: MeanState
-    width: Array  # q, of each rod in its neighbourhood; NaN if rods are not resolved
     closure: Closure
-    labels: Labels | None  # of exchangeable points
+    descriptions: Descriptions
     fluctuations: Fluctuations | None = None
     residual: float = 0.0
     iterations: int = 0
     flux: Array | None = None  # n q at the fine cells of labels; None: that of the closure
+
+    @property
+    def labels(self) -> Labels | None:
+        """Of exchangeable points."""
+        return self.descriptions.labels
 
 
 def mean_field(chain: Chain, cells: Cells) -> Steady:
@@ -90,16 +94,7 @@ def mean_field(chain: Chain, cells: Cells) -> Steady:
         off, flux = found.residual, chain.size * flux
     else:
         mean = descriptions.solve(medium, closure)
-    return Steady(
-        medium,
-        cells,
-        mean,
-        descriptions.widths(medium, mean),
-        closure,
-        labels,
-        residual=off,
-        flux=flux,
-    )
+    return Steady(medium, cells, mean, closure, descriptions, residual=off, flux=flux)
 
 
 def in_agreement(chain: Chain, cells: Cells) -> Steady:
@@ -133,17 +128,8 @@ def in_agreement(chain: Chain, cells: Cells) -> Steady:
     responses = linear_response(background), relaxing
     if (growth := max(each.largest_growth() for each in responses)) > 0:
         raise NoSteadyStateError(f"the state is not stable: deviations grow at the rate {growth:g}")
-    return Steady(
-        medium,
-        cells,
-        mean,
-        descriptions.widths(medium, mean),
-        closure,
-        descriptions.labels,
-        Fluctuations(background, pairs, displaced),
-        end.residual,
-        iterations,
-    )
+    found = Fluctuations(background, pairs, displaced)
+    return Steady(medium, cells, mean, closure, descriptions, found, end.residual, iterations)
 
 
 def _background(

@@ -169,6 +169,7 @@ def _in_vocabulary(chain: Chain, found: Steady) -> xr.Dataset:
 def rods_of(chain: Chain, found: Steady) -> Rods:
     """Return the moments of the rods."""
     medium, cells = found.medium, found.cells
+    own = found.descriptions.widths(medium, found.mean)
     middles: Array = np.arange(0.5, chain.size)
     place, T = (
         np.interp(middles, cells.centres, field)
@@ -177,11 +178,11 @@ def rods_of(chain: Chain, found: Steady) -> Rods:
     if found.fluctuations is None:
         share, K = 1 / chain.size, medium.stiffness
         of_centre = share * (1 - T) / K if medium.exponent == 2 and K else 0.0
-        return Rods(place, np.sqrt(found.width**2 + of_centre), (1 - share) * T + share)
+        return Rods(place, np.sqrt(own**2 + of_centre), (1 - share) * T + share)
     collective = np.interp(middles, cells.contacts, found.closure.collective)
     of = found.fluctuations.displaced
     displaced = at_distance(of.displacement, of.cells.centres, middles, 0.0)
-    return Rods(place, np.sqrt(np.maximum(found.width**2 + displaced, 0.0)), T + collective)
+    return Rods(place, np.sqrt(np.maximum(own**2 + displaced, 0.0)), T + collective)
 
 
 def _over_positions(chain: Chain, found: Steady, rods: Rods) -> tuple[dict[str, Array], Variables]:

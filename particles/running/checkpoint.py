@@ -21,8 +21,7 @@ from typing import Any
 import numpy as np
 
 from crazybilliards.model.fingerprint import room_fingerprint
-from crazybilliards.model.locks import locked
-from crazybilliards.model.storage import make_folder, read_sealed, write_sealed
+from crazybilliards.model.storage import locked, make_folder, read_sealed, write_sealed
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import Replica
 

@@ -6,12 +6,12 @@ import sys
 
 import pytest
 
-from crazybilliards.model.locks import locked
+from crazybilliards.model.storage import locked
 
 HOLDER = """
 import sys, time
 from pathlib import Path
-from crazybilliards.model.locks import locked
+from crazybilliards.model.storage import locked
 with locked(Path(sys.argv[1])):
     print("held", flush=True)
     time.sleep(600)
@@ -41,7 +41,7 @@ def test_a_lock_is_held_until_its_process_ends_however_it_ends(name, tmp_path):
 CONTENDER = """
 import os, sys
 from pathlib import Path
-from crazybilliards.model.locks import locked
+from crazybilliards.model.storage import locked
 folder, entered = Path(sys.argv[1]), 0
 for _ in range(1000):
     try:

@@ -13,8 +13,7 @@ from small_sweeps import AtOnce
 from crazybilliards.comparison import load_sweep
 from crazybilliards.comparison.sweeps import Case, read_sweep, run_cases
 from crazybilliards.model import Chain, chain_of, load, save
-from crazybilliards.model.locks import locked
-from crazybilliards.model.storage import load_attributes, write_sealed
+from crazybilliards.model.storage import load_attributes, locked, write_sealed
 from crazybilliards.model.vocabulary import result
 from crazybilliards.particles import simulate
 

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from crazybilliards.model import Chain
-from crazybilliards.model.locks import locked
+from crazybilliards.model.storage import locked
 from crazybilliards.particles import simulate
 from crazybilliards.particles.observers.widths import Widths
 from crazybilliards.particles.running import checkpoint

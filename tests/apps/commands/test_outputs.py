@@ -14,7 +14,7 @@ from crazybilliards.comparison.distances import deviations
 from crazybilliards.comparison.side_by_side import grid_figures
 from crazybilliards.comparison.side_by_side.relaxation import label_distances
 from crazybilliards.model import load
-from crazybilliards.model.locks import locked
+from crazybilliards.model.storage import locked
 
 IN_A_BOX = "--release gathered --box 40 --stiffness 0"
 SMALL = {
