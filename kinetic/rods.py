@@ -97,10 +97,13 @@ def rod_by_rod(theory: xr.Dataset) -> xr.Dataset:
         meaning = described(*VOCABULARY[name])
         result[name] = ((*leading, along), values if leading else values[0], meaning)
     mean = result.mean_displacement
-    position = described(*VOCABULARY["mean_position"])
     result = result.assign_coords(
         particle=("particle", np.arange(chain.size) + 1, described(*VOCABULARY["particle"])),
-        mean_position=(mean.dims, mean.values + chain.anchors, position),
+        mean_position=(
+            mean.dims,
+            mean.values + chain.anchors,
+            described(*VOCABULARY["mean_position"]),
+        ),
     )
     by_labels = json.loads(theory.attrs["provenance"]).get("theory") == BY_LABELS
     exact = by_labels and not math.isnan(theory.attrs.get("density_model_error", math.nan))

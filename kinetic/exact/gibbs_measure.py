@@ -247,8 +247,10 @@ def _window(chain: Chain) -> tuple[float, int]:
         half = math.ceil(length / narrowest * _NODES_PER_WIDTH)
     # Without walls it refuses, too, what would take as long as a table that is larger than memory.
     rods = 1 if chain.exchangeable and chain.box else chain.size
-    needed = 8.0 * rods * (2 * half + 1)
-    require_memory(f"size={chain.size} (force_balance takes more): the exact equilibrium", needed)
+    require_memory(
+        f"size={chain.size} (force_balance takes more): the exact equilibrium",
+        8.0 * rods * (2 * half + 1),
+    )
     return length, half
 
 
