@@ -1,7 +1,7 @@
 r"""Wrong calls, each with what its message says; ``...`` stands for anything between.
 
-One line for each kind of message. ``tests/whole/test_messages.py`` says what the names stand for, and
-makes the calls.
+One line for each kind of message. ``tests/whole/test_messages.py`` says what the names stand for,
+and makes the calls.
 """
 
 GAMMA = "\N{GREEK SMALL LETTER GAMMA}"
@@ -137,7 +137,7 @@ cb.hydrodynamics(chain, moved.assign(temperature=3.0), 1) | does not read 'tempe
 cb.force_balance(chain, None, exact.velocity_width) | a DataArray must hold its values over x alone
 cb.hydrodynamics(six, start, 1) | the result has no 'density'
 cb.force_balance(six, displacement=exact) | the result has 5 particles, the chain 6
-flow(moved.assign(density=moved.density.roll(x=30))) | its label and the integral of its density are...drop_vars('label')
+flow(moved.assign(density=moved.density.roll(x=30))) | its label and...are 1.21
 cb.hydrodynamics(chain, foreign, 1) | start: the density must add up to the chain's 5 rods
 cb.compare_relaxation(chain, every=1e3) | every must be at most
 cb.compare_relaxation(chain, "wave") | a gas of points needs a box=..., and gap=0 or stiffness=0
