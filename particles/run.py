@@ -266,3 +266,9 @@ class Run:
             "start": "at rest" if self.start is None else f"sha256 {digest(self.starts).hex()}",
             "schedule": {name: getattr(self, name) for name in steps},
         }
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """What a result says of its run beside the provenance."""
+        flight = "exact" if self.exact else "in steps"
+        return {"flight": flight, "relaxation_time": scales.relaxation_time(self.chain)}

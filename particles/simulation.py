@@ -2,7 +2,10 @@
 
 import os
 from collections.abc import Sequence
+from concurrent.futures import FIRST_EXCEPTION, Future, ThreadPoolExecutor, wait
 from contextlib import nullcontext
+from signal import SIGINT
+from threading import Event
 from typing import Any
 
 import xarray as xr
@@ -12,17 +15,21 @@ from numpy.typing import ArrayLike
 from crazybilliards.model import Chain
 from crazybilliards.model.checks import check_integer, check_path, check_real, with_hints
 from crazybilliards.model.kernels import announced
+from crazybilliards.model.process import interrupts_noted
+from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.randomness import Seed, seed_of
-from crazybilliards.model.warn import DivergedError, DivergedWarning, warn_user
+from crazybilliards.model.warn import warn_user
 from crazybilliards.particles.dynamics import Stepper
 from crazybilliards.particles.laws.law import Method
 from crazybilliards.particles.observers import Observer, check_observers, find_observers
 from crazybilliards.particles.run import Average, Run
 from crazybilliards.particles.running.checkpoint import Checkpoint
 from crazybilliards.particles.running.collecting import collect
-from crazybilliards.particles.running.replica import NEVER, make_replicas
-from crazybilliards.particles.running.threads import run_all
+from crazybilliards.particles.running.replica import Replica, make_replicas
 from crazybilliards.particles.stepping import compile_kernels
+
+# Collisions of each rod after which a step is given up at Ctrl-C; others take seconds in all.
+_PATIENCE = 64
 
 
 class ShortRunWarning(UserWarning):
@@ -183,32 +190,61 @@ def simulate(
     copies = make_replicas(run)
     with announced(bool(progress)):
         compile_kernels({run.exact})
-    state = None if path is None else Checkpoint(path, run, checkpoint_interval)
-    with nullcontext() if state is None else state.resumed(copies):
-        interrupted = run_all(copies, threads, state, progress)
-    measured = collect(run, copies, interrupted)
-    if any(copy.reached < NEVER for copy in copies):
-        _tell_of_divergence(run, measured)
-    return measured
+    state = None if path is None else Checkpoint(path, run, checkpoint_interval, copies)
+    with nullcontext() if state is None else state.resumed():
+        interrupted = _run_all(copies, threads, state, progress)
+    return collect(run, copies, interrupted)
 
 
-def _tell_of_divergence(run: Run, measured: xr.Dataset) -> None:
-    """Warn that the chain diverged, when and why; raise if nothing was measured before."""
-    why = f"the time_step {run.time_step:.3g} is too long for its springs; give a shorter one"
-    if max(run.chain.restitution, run.chain.wall_restitution) > 1:
-        why = (
-            "at restitution > 1 collisions bring in more energy than the damping takes out. Take "
-            "fewer rods (critical_size(chain) estimates how many are too many), more damping, or "
-            "the start equilibrium_states(chain.replace(restitution=1), replicas)"
-        )
-    text = f"the chain diverged after t = {measured.attrs['end_time']:g}"
-    if measured.data_vars:
-        warn_user(f"{text}: {why}. Averages over time include its growth", DivergedWarning)
-        return
-    text += f" and before the first snapshot at t = {run.time(0):g}, so nothing was measured"
-    error = DivergedError(f"{text}: {why}. To see it grow, give warmup=0 and a shorter every")
-    error.result = measured
-    raise error
+def _run_all(
+    replicas: list[Replica], threads: int, checkpoint: Checkpoint | None, progress: bool | str
+) -> bool:
+    """Run the replicas in threads; return whether Ctrl-C, or a signal like it, stopped them."""
+    stop, futures = Event(), list[Future[None]]()
+    with (
+        interrupts_noted() as signals,
+        progress_bar(
+            progress,
+            total=sum(replica.total for replica in replicas),
+            initial=sum(replica.done for replica in replicas),
+            desc=progress if isinstance(progress, str) else "simulating",
+            unit=" time units",
+            unit_scale=True,
+            bar_format="{l_bar}{bar}| {elapsed}<{remaining}, {rate_fmt}",
+        ) as bar,
+    ):
+        try:
+            with ThreadPoolExecutor(min(threads, len(replicas))) as pool:
+                try:
+                    futures.extend(pool.submit(replica.work, stop) for replica in replicas)
+                    while not signals and _go_on(futures, checkpoint):
+                        bar.update(sum(replica.done for replica in replicas) - bar.n)
+                except KeyboardInterrupt:  # from a handler that is not ours
+                    signals.append(SIGINT)
+                finally:
+                    stop.set()  # otherwise leaving the block would wait for the end of the run
+                    for replica in replicas:
+                        replica.patience[0] = _PATIENCE * replica.y.size
+            bar.update(sum(replica.done for replica in replicas) - bar.n)
+        finally:  # also where such a handler ends the program
+            whole = not any(replica.broken for replica in replicas)  # else the last one stays
+            if checkpoint and whole and not any(future.exception() for future in futures):
+                checkpoint.save()
+        for future in futures:
+            future.result()
+    return bool(signals)
+
+
+def _go_on(futures: list[Future[None]], checkpoint: Checkpoint | None) -> bool:
+    """Wait a moment; return whether there is work and no failure; save a checkpoint that is due."""
+    timeout = min(max(0.02, 1e-4 * len(futures)), 0.5)  # to look at many futures takes time
+    if checkpoint is not None:
+        timeout = min(timeout, checkpoint.interval)
+    done, pending = wait(futures, timeout=timeout, return_when=FIRST_EXCEPTION)
+    going = bool(pending) and not any(future.exception() for future in done)
+    if going and checkpoint is not None:
+        checkpoint.save_if_due()
+    return going
 
 
 def make_run(chain: Chain, *, observe: Any, **arguments: Any) -> Run:

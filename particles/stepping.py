@@ -225,9 +225,12 @@ def compile_kernels(flights: Iterable[bool] = (True, False)) -> None:
     ``flights``: whether the motions of the chains are known exactly, which needs few kernels.
     """
     y, v = np.zeros((2, 2))
-    state = y, v, make_noise(np.random.SeedSequence(0))
+    dynamics = make_dynamics(Chain(size=2), 0.1, speed=1.0, counted=True)
+    state = y, v, make_noise(np.random.SeedSequence(0)), dynamics, make_scratch(2)
+    snapshots = np.zeros((2, 1, 2))
     for exact in set(flights):
-        # Counting collisions compiles event_driven.drift and everything that the others need.
-        dynamics = make_dynamics(Chain(size=2), 0.1, speed=1.0, counted=not exact)
-        advance(*state, dynamics, make_scratch(2), make_tally(2, contacts=True), 1)
+        if exact:
+            record_flight(*state, 1, *snapshots)
+        else:  # Counting collisions compiles event_driven.drift and everything others need.
+            record_steps(*state, make_tally(2, contacts=True), 1, *snapshots)
     deposit(y, -1.0, 0.1, np.zeros(30))

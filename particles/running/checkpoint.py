@@ -33,8 +33,8 @@ _LONGEST = 2.0  # seconds that a chunk may take, so that Ctrl-C need not wait fo
 class Checkpoint:
     """The checkpoint file of one run, which continues only the same run."""
 
-    def __init__(self, path: Path, run: Run, interval: float) -> None:
-        self.path, self.interval = path, interval
+    def __init__(self, path: Path, run: Run, interval: float, replicas: Sequence[Replica]) -> None:
+        self.path, self.interval, self.replicas = path, interval, replicas
         self.saved = time.monotonic()
         own = ("average", "duration", "warmup", "time_step", "every")
         identity = run.chain.parameters() | run.provenance
@@ -43,7 +43,7 @@ class Checkpoint:
         self.identity = json.loads(json.dumps(identity))  # as it will be read back
 
     @contextmanager
-    def resumed(self, replicas: Sequence[Replica]) -> Iterator[None]:
+    def resumed(self) -> Iterator[None]:
         """Set the replicas to the state in the file, if there is one, and lock the file.
 
         It is an OSError if the file cannot be read or written, or another run is using it, and a
@@ -52,19 +52,19 @@ class Checkpoint:
         make_folder(self.path.parent)
         with locked(self.path):
             if self.path.exists():
-                self._restore(replicas)
-            self._write(replicas)  # this shows before any work that the file can be written
+                self._restore()
+            self._write()  # this shows before any work that the file can be written
             yield
 
-    def save_if_due(self, replicas: Sequence[Replica]) -> None:
+    def save_if_due(self) -> None:
         """Save if the interval has passed since the last time."""
         if time.monotonic() - self.saved >= self.interval:
-            self.save(replicas)
+            self.save()
 
-    def save(self, replicas: Sequence[Replica]) -> None:
+    def save(self) -> None:
         """Write the state of all replicas; only warn if the disk is full, to keep the run."""
         try:
-            self._write(replicas)
+            self._write()
         except OSError as error:
             warnings.warn(
                 f"{self.path}: no checkpoint written: {error.strerror}; the run continues, and the "
@@ -74,11 +74,11 @@ class Checkpoint:
             )
             self.saved = time.monotonic()
 
-    def _write(self, replicas: Sequence[Replica]) -> None:
+    def _write(self) -> None:
         """Write the state of all replicas, each at the end of its chunk."""
         header = json.dumps(self.identity).encode()
         arrays: dict[str, Any] = {"header": np.frombuffer(header, dtype=np.uint8)}
-        for number, replica in enumerate(replicas):
+        for number, replica in enumerate(self.replicas):
             if not replica.lock.acquire(timeout=_LONGEST):
                 raise TimeoutError(errno.ETIMEDOUT, "a time step takes very many collisions")
             try:
@@ -93,7 +93,7 @@ class Checkpoint:
         write_sealed(self.path, buffer.getvalue())
         self.saved = time.monotonic()
 
-    def _restore(self, replicas: Sequence[Replica]) -> None:
+    def _restore(self) -> None:
         content = read_sealed(self.path)
         try:
             archive = np.load(io.BytesIO(content), allow_pickle=False)
@@ -111,7 +111,7 @@ class Checkpoint:
                 f"{', '.join(differing)}; remove the file to start anew"
             )
         try:
-            for number, replica in enumerate(replicas):
+            for number, replica in enumerate(self.replicas):
                 replica.restore(arrays, f"{number}/")
         except (KeyError, TypeError, ValueError) as error:
             raise ValueError(f"{self.path}: a checkpoint without a part of the run") from error

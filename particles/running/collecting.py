@@ -8,11 +8,12 @@ from numpy.typing import ArrayLike
 
 from crazybilliards.model import WALLS_AND_MASSES, Array
 from crazybilliards.model.vocabulary import result
+from crazybilliards.model.warn import DivergedError, DivergedWarning, warn_user
 from crazybilliards.particles.laws.law import EXACT, TURN
 from crazybilliards.particles.observers.base import Integers, Variables
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import NEVER, Replica
-from crazybilliards.particles.scales import centre_width, relaxation_time
+from crazybilliards.particles.scales import centre_width
 from crazybilliards.particles.step_error import time_step_error
 
 
@@ -54,12 +55,29 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         vocabulary=run.vocabulary,
         method={**run.provenance, "duration": run.duration, "snapshots": int(counts.sum())},
     )
-    measured.attrs |= {
-        "flight": "exact" if run.exact else "in steps",
-        "relaxation_time": relaxation_time(run.chain),
-        "time_step_error": _time_step_error(run, measured),
-    }
+    measured.attrs |= run.attributes | {"time_step_error": _time_step_error(run, measured)}
+    if diverged:
+        _tell_of_divergence(run, measured)
     return measured
+
+
+def _tell_of_divergence(run: Run, measured: xr.Dataset) -> None:
+    """Warn that the chain diverged, when and why; raise if nothing was measured before."""
+    why = f"the time_step {run.time_step:.3g} is too long for its springs; give a shorter one"
+    if max(run.chain.restitution, run.chain.wall_restitution) > 1:
+        why = (
+            "at restitution > 1 collisions bring in more energy than the damping takes out. Take "
+            "fewer rods (critical_size(chain) estimates how many are too many), more damping, or "
+            "the start equilibrium_states(chain.replace(restitution=1), replicas)"
+        )
+    text = f"the chain diverged after t = {measured.attrs['end_time']:g}"
+    if measured.data_vars:
+        warn_user(f"{text}: {why}. Averages over time include its growth", DivergedWarning)
+        return
+    text += f" and before the first snapshot at t = {run.time(0):g}, so nothing was measured"
+    error = DivergedError(f"{text}: {why}. To see it grow, give warmup=0 and a shorter every")
+    error.result = measured
+    raise error
 
 
 def _report(replicas: list[Replica], counts: Integers) -> tuple[Variables, dict[str, Array]]:

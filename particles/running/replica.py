@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from crazybilliards.model import Array
 from crazybilliards.model.arrays import merge_pairs
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
-from crazybilliards.particles.laws.law import make_scratch
+from crazybilliards.particles.laws.law import Scratch, make_scratch
 from crazybilliards.particles.noise import STATE, make_noise
 from crazybilliards.particles.observers.base import Snapshots
 from crazybilliards.particles.run import Run
@@ -86,74 +86,68 @@ class Replica:
         """Time that the replica has simulated."""
         return (self.copy * self.run.steps + self.steps) * self.run.time_step
 
-    def work(self, stop: Event) -> Iterator[float]:
-        """Run and hold the lock during each chunk; yield the work ``done`` in every chunk."""
-        chunks = self._run(stop)
-        while True:
+    def work(self, stop: Event) -> None:
+        """Run to the end, or until ``stop`` is set; hold the lock during each chunk."""
+        chunks, going = self._run(stop), True
+        while going:
             with self.lock:
-                before = self.done
-                if next(chunks, None) is None:
-                    return
-                after = self.done
-            yield after - before
+                going = next(chunks, False)
 
-    def _run(self, stop: Event) -> Iterator[int]:
-        """Warm up and measure, copy by copy; yield the number of steps after every chunk."""
-        chunk = max(_CHUNK // self.y.size, 1)
-        while True:
-            yield from self._warm_up(stop, chunk)
-            yield from self._measure(stop, chunk)
-            if stop.is_set() or self.copy + 1 == self.members.size:
-                return
-            self.copy += 1
-            self._start()
-
-    def _warm_up(self, stop: Event, chunk: int) -> Iterator[int]:
-        scratch = make_scratch(self.y.size, self.dynamics.inverse, self.patience)
-        uncounted = make_tally(self.y.size, contacts=False)
-        while self.steps < self.run.warmup_steps and not (self.over or stop.is_set()):
-            steps = min(chunk, self.run.warmup_steps - self.steps)
-            if not self._advance(scratch, uncounted, steps):
-                self._diverge(0)
-                return
-            self.steps += steps
-            yield steps
-
-    def _measure(self, stop: Event, chunk: int) -> Iterator[int]:
-        run, tally = self.run, make_tally(self.y.size, contacts=self.run.recorded["counted"])
+    def _run(self, stop: Event) -> Iterator[bool]:
+        """Warm up and measure, copy by copy; yield after every chunk."""
+        run, size = self.run, self.y.size
+        chunk = max(_CHUNK // size, 1)
+        buffers = np.empty((2, max(min(chunk // run.stride, _ROOM // size), 1), size))
+        scratch = make_scratch(size, self.dynamics.inverse, self.patience)
+        tally, uncounted = (
+            make_tally(size, contacts=counted) for counted in (run.recorded["counted"], False)
+        )
         for observer in self.observers:
             tally = observer.tally(tally)
-        scratch = make_scratch(self.y.size, self.dynamics.inverse, self.patience)
-        rows = max(min(chunk // run.stride, _ROOM // self.y.size), 1)
-        y_buffer, v_buffer = np.empty((2, rows, self.y.size))
-        while self.snapshots < run.snapshots and not (self.over or stop.is_set()):
-            block, left = self._block()
-            n = min(rows, left, run.snapshots - self.snapshots)
-            due = run.step_of(self.snapshots) - self.steps
-            tally.contacts[:] = 0
-            if due == 0:  # the start of an ensemble
-                y_buffer[0], v_buffer[0], good, steps = self.y, self.v, 1, 0
-            elif due > chunk:  # no snapshot is due, but Ctrl-C must not wait
-                n, good, steps = 0, 0, chunk
-                if not self._advance(scratch, tally, steps):
-                    self._diverge(block)
+        while not stop.is_set():
+            if self.over or self.snapshots == run.snapshots:
+                if self.copy + 1 == self.members.size:
                     return
+                self.copy += 1
+                self._start()
+            elif self.steps < run.warmup_steps:
+                self._advance(min(chunk, run.warmup_steps - self.steps), scratch, uncounted)
             else:
-                state = self.y, self.v, self.noise, self.dynamics, scratch, tally
-                good, *_ = record(*state, due, y_buffer[:n], v_buffer[:n])
-                steps = good * due
-            self._observe(block, y_buffer[:good], v_buffer[:good], tally)
-            # All updates come before the yield, where a checkpoint may be saved.
-            self.counts[block] += good
-            self.snapshots += good
-            self.steps += steps
-            if good < n:
-                self._diverge(block)
-            yield steps
+                self._measure(chunk, scratch, tally, *buffers)
+            yield True
 
-    def _advance(self, scratch: Any, tally: Tally, steps: int) -> bool:
+    def _advance(self, steps: int, scratch: Scratch, tally: Tally) -> bool:
         """Take steps without snapshots; return False if the chain diverged."""
-        return advance(self.y, self.v, self.noise, self.dynamics, scratch, tally, steps) >= 0
+        state = self.y, self.v, self.noise, self.dynamics, scratch, tally
+        if advance(*state, steps) < 0:
+            self._diverge()
+            return False
+        self.steps += steps
+        return True
+
+    def _measure(
+        self, chunk: int, scratch: Scratch, tally: Tally, y_buffer: Array, v_buffer: Array
+    ) -> None:
+        """Let observers take the next snapshots, all of one block, after the steps due to them."""
+        block, left = self._block()
+        n = min(len(y_buffer), left, self.run.snapshots - self.snapshots)
+        due = self.run.step_of(self.snapshots) - self.steps
+        tally.contacts[:] = 0
+        if due > chunk:  # no snapshot yet, because Ctrl-C must not wait
+            if self._advance(chunk, scratch, tally):
+                self._observe(block, y_buffer[:0], v_buffer[:0], tally)
+            return
+        if due == 0:  # the start of an ensemble
+            y_buffer[0], v_buffer[0], good = self.y, self.v, 1
+        else:
+            state = self.y, self.v, self.noise, self.dynamics, scratch, tally
+            good, _ = record(*state, due, y_buffer[:n], v_buffer[:n])
+        self._observe(block, y_buffer[:good], v_buffer[:good], tally)
+        self.counts[block] += good
+        self.snapshots += good
+        self.steps += good * due
+        if good < n:
+            self._diverge()
 
     def _block(self) -> tuple[int, int]:
         """Return the block of the next snapshot, and how many it still needs; make room for it."""
@@ -174,10 +168,10 @@ class Replica:
         for observer in self.observers:
             observer.observe(snapshots)
 
-    def _diverge(self, block: int) -> None:
+    def _diverge(self) -> None:
         self.broken = self.patience[0] < NEVER
         if not self.broken:
-            self.over, self.reached = True, min(self.reached, block)
+            self.over, self.reached = True, min(self.reached, self.snapshots // self.length)
 
 
 def restore(owner: Any, name: str, value: NDArray[Any]) -> None:
