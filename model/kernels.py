@@ -27,6 +27,9 @@ from numba.core.options import DefaultOptions
 from crazybilliards.model.fingerprint import room_fingerprint
 from crazybilliards.model.process import interrupts_noted
 
+# With unsigned indices compiled code need not check for indices from the end of an array.
+INDEX = np.uint64
+
 _to_announce: ContextVar[bool] = ContextVar("to_announce", default=False)
 
 

@@ -8,9 +8,9 @@ velocities of the two rods that meet first change by
 and at most three contacts get a new time. If contacts close at the same time, the one with the
 larger closing speed is taken first, and of equal speeds the left one.
 
-**A calendar** (``calendar.py``) finds the contact that closes first. **Rods that touch** at the
+**A calendar** (``next_contact.py``) finds the contact that closes first. **Rods that touch** at the
 beginning collide at time 0, row by row, because rows do not know of each other. Where a row or a
-list of the calendar is long, **a tournament** (``tournament.py``) takes over until the end of the
+list of the calendar is long, **a tournament** takes over until the end of the
 step.
 
 **Inelastic collapse.** For e < 1 neighbours may collide infinitely often in a finite time. If the
@@ -29,13 +29,20 @@ collision of their own (``unequal.py``): a branch would make the one of equal ro
 
 import numpy as np
 
-from crazybilliards.model.kernels import inlined, kernel
+from crazybilliards.model.kernels import INDEX, inlined, kernel
 from crazybilliards.particles.laws import unequal
 from crazybilliards.particles.laws.avalanche import record_collision
-from crazybilliards.particles.laws.calendar import earliest, list_due, list_of, move, open_calendar
 from crazybilliards.particles.laws.impacts import record_impact, record_speed
+from crazybilliards.particles.laws.next_contact import (
+    climb,
+    earliest,
+    list_due,
+    list_of,
+    move,
+    open_calendar,
+    plant,
+)
 from crazybilliards.particles.laws.spring_correction import springs_ahead
-from crazybilliards.particles.laws.tournament import INDEX, climb, plant
 
 _0, _1 = INDEX(0), INDEX(1)
 

@@ -8,12 +8,16 @@ Statist. 26, 641, 1955) computes it exactly in O(L).
 Most rods meet no other rod within a step, at random, and a mispredicted branch costs a processor
 more than the arithmetic of a rod. The violations (rods that have overtaken their left neighbour)
 are therefore listed first, without a branch. Only their blocks are then processed.
+
+Rods of unequal masses make the regression one with the masses as weights, because blocks conserve
+the momentum. Two walls bound the ordered values. The nearest ordered values between two bounds are
+the nearest ordered ones, cut at the bounds, so the walls need no regression of their own.
 """
 
 import numpy as np
 
-from crazybilliards.model.kernels import kernel
-from crazybilliards.particles.laws.tournament import INDEX
+from crazybilliards.model.kernels import INDEX, kernel
+from crazybilliards.particles.laws.closed_contacts import find_clusters
 
 _0, _1, _2 = INDEX(0), INDEX(1), INDEX(2)
 
@@ -114,3 +118,52 @@ def drift(y, v, dt, violations, floats, clusters):  # type: ignore[no-untyped-de
     blocks, merged = pool(y, v, violations, count, firsts, lasts, floats[0], floats[1])
     clusters.number[0] = blocks
     return np.int64(merged)
+
+
+@kernel
+def pool_weighted(values, carried, inverse, firsts, totals, carried_totals, weights):  # type: ignore[no-untyped-def]
+    """Isotonic regression of ``values`` with the weights 1/``inverse``, in place.
+
+    Return the number of pairs merged. ``carried`` are averaged over the same blocks. The last four
+    are scratch space of the values' size.
+    """
+    blocks = 0
+    for i in range(values.size):
+        firsts[blocks], weights[blocks] = i, 1.0 / inverse[i]
+        totals[blocks], carried_totals[blocks] = values[i] / inverse[i], carried[i] / inverse[i]
+        left = blocks - 1
+        while left >= 0 and totals[left] * weights[left + 1] > totals[left + 1] * weights[left]:
+            weights[left] += weights[left + 1]
+            totals[left] += totals[left + 1]
+            carried_totals[left] += carried_totals[left + 1]
+            left -= 1
+        blocks = left + 2
+    before = -np.inf
+    for block in range(blocks):
+        first = firsts[block]
+        end = firsts[block + 1] if block + 1 < blocks else values.size
+        if end - first > 1:
+            values[first] = totals[block] / weights[block]
+            carried[first] = carried_totals[block] / weights[block]
+        # Rounding may put the means of neighbouring blocks that touch out of order.
+        before = values[first] = max(values[first], before)
+        for i in range(first + 1, end):
+            values[i], carried[i] = values[first], carried[first]
+    return values.size - blocks
+
+
+@kernel
+def stick(y, v, dt, law, scratch):  # type: ignore[no-untyped-def]
+    """Advance ``y`` and ``v`` at e = 0, also of the walls; return the contacts that closed."""
+    n = y.size
+    for i in range(n):
+        y[i] += dt * v[i]
+    inverse = scratch.inverse[1:-1] if law.high < np.inf else scratch.inverse
+    spare = scratch.floats[0], scratch.floats[1], scratch.floats[2]
+    closed = pool_weighted(y, v, inverse, scratch.integers[0], *spare)
+    for i in range(n):
+        if y[i] < law.low or y[i] > law.high:
+            y[i], v[i] = min(max(y[i], law.low), law.high), 0.0
+            closed += 1
+    find_clusters(y, scratch.clusters, law.low, law.high)
+    return np.int64(closed)

@@ -17,14 +17,7 @@ from numpy.typing import NDArray
 
 from crazybilliards.model import WALLS_AND_MASSES, Chain
 from crazybilliards.model.kernels import inlined
-from crazybilliards.particles.laws import (
-    contact_dynamics,
-    event_driven,
-    isotonic,
-    sort,
-    walls,
-    weighted,
-)
+from crazybilliards.particles.laws import contact_dynamics, event_driven, isotonic, sort, walls
 from crazybilliards.particles.laws.avalanche import Tally, make_tally
 from crazybilliards.particles.laws.closed_contacts import Clusters, make_clusters
 from crazybilliards.particles.laws.exact_flight import independent_rods
@@ -179,11 +172,11 @@ def drift(y, v, anchors, dt, law, scratch, tally):  # type: ignore[no-untyped-de
         return 0
     if law.operator == ISOTONIC:
         if law.unequal:
-            return weighted.stick(y, v, dt, law, scratch)
+            return isotonic.stick(y, v, dt, law, scratch)
         return isotonic.drift(y, v, dt, scratch.integers[0], scratch.floats, scratch.clusters)
     if law.operator == CONTACTS:
         if law.unequal:
-            return weighted.solve(y, v, anchors, dt, law, scratch)
+            return contact_dynamics.solve(y, v, anchors, dt, law, scratch)
         spring_and_scratch = law.pull, law.exponent, scratch.integers, scratch.floats
         return contact_dynamics.drift(y, v, anchors, dt, law.restitution, *spring_and_scratch)
     if law.high < np.inf:

@@ -14,12 +14,11 @@ that flies in rebounds with a restitution of its own (``row_restitution``).
 
 import numpy as np
 
-from crazybilliards.model.kernels import kernel
+from crazybilliards.model.kernels import INDEX, kernel
 from crazybilliards.particles.laws import impacts as rows
 from crazybilliards.particles.laws.avalanche import record_collision
 from crazybilliards.particles.laws.closed_contacts import CRITICAL_RESTITUTION
 from crazybilliards.particles.laws.spring_correction import springs_ahead
-from crazybilliards.particles.laws.tournament import INDEX
 
 _0, _1 = INDEX(0), INDEX(1)
 
