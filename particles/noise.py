@@ -63,11 +63,10 @@ STATE = ("lanes", "normals", "taken")  # what the next numbers depend on
 
 def make_noise(stream: np.random.SeedSequence) -> Noise:
     """Return the noise of a stream: streams spawned from one seed are independent."""
-    lanes = np.asarray(stream.generate_state(4 * LANES, np.uint64), dtype=np.uint64)
     bits = np.zeros(BLOCK, dtype=np.uint64)
     half = bits[: BLOCK // 2]
     return Noise(
-        lanes.reshape(4, LANES),
+        np.asarray(stream.generate_state(4 * LANES, np.uint64), np.uint64).reshape(4, LANES),
         np.zeros(BLOCK),
         np.array([BLOCK]),
         bits,

@@ -71,7 +71,9 @@ class Run:
     snapshots: int = field(init=False)  # of each replica
     blocks: int = field(init=False)
     block: int = field(init=False)
-    too_short: str = field(init=False)  # in what it is too short for an average over time
+    too_short: str = field(
+        init=False, default=""
+    )  # in what it is too short for an average over time
 
     def __post_init__(self) -> None:
         for name, kinds in (("method", Method), ("stepper", Stepper), ("average", Average)):
@@ -95,8 +97,11 @@ class Run:
         require_resolved(self.chain, float(self.chain.reduced_anchors[-1]))
         sums = self.groups * sum(observer.memory(self) for observer in self.observers)
         names = ", ".join(observer.name for observer in self.observers)
-        few = "ask for less, such as 'widths' alone, or fewer particles, replicas or times"
-        require_memory(f"observe ({few}): {names}", rest + _COPIES * sums)
+        require_memory(
+            "observe (ask for less, such as 'widths' alone, or fewer particles, replicas or times)"
+            f": {names}",
+            rest + _COPIES * sums,
+        )
 
     def _count_steps(self) -> None:
         """Check the times, choose those that are not given, and count steps and snapshots."""
@@ -127,12 +132,13 @@ class Run:
             self.snapshots = self.blocks = math.ceil(intervals - 1e-9) + 1
             self.block = 1
         else:
-            counts = count_blocks(self.chain, duration, self.every, self.replicas)
-            self.snapshots, self.blocks, self.block = counts
+            self.snapshots, self.blocks, self.block = count_blocks(
+                self.chain, duration, self.every, self.replicas
+            )
         at_rest = self.start is None or self.start.attrs.get("source") == "start"
         timed = self.ensemble or all(observer.shares_time for observer in self.observers)
-        averaged = self.chain, duration, warmup, self.replicas, at_rest
-        self.too_short = "" if timed else too_short(*averaged)
+        if not timed:
+            self.too_short = too_short(self.chain, duration, warmup, self.replicas, at_rest)
         self.warmup = self.warmup_steps * self.time_step
         self.duration = (self.snapshots - self.ensemble) * self.stride * self.time_step
 
@@ -153,7 +159,7 @@ class Run:
     @property
     def steps(self) -> int:
         """Steps that a replica takes, warm-up included."""
-        return self.warmup_steps + (self.snapshots - self.ensemble) * self.stride
+        return self.step_of(self.snapshots - 1)
 
     def step_of(self, snapshot: int) -> int:
         """Return the number of steps before a snapshot, which is counted from 0."""
@@ -197,14 +203,16 @@ class Run:
     @cached_property
     def swing(self) -> float:
         """Largest distance from its anchor that the energy of the start gives a rod [R]."""
-        time = self.warmup + self.duration
-        return max(start_swing(self.chain, time, y, v) for y, v in self.starts)
+        return max(
+            start_swing(self.chain, self.warmup + self.duration, *one) for one in self.starts
+        )
 
     @cached_property
     def fastest_start(self) -> float:
         """Upper estimate of the speed that noise and the start's energy give a rod [R/t_0]."""
-        time = self.warmup + self.duration
-        return max(typical_speed(self.chain, time, y, v) for y, v in self.starts)
+        return max(
+            typical_speed(self.chain, self.warmup + self.duration, *one) for one in self.starts
+        )
 
     @cached_property
     def streams(self) -> list[np.random.SeedSequence]:
@@ -250,11 +258,6 @@ class Run:
         )
 
     @property
-    def vocabulary(self) -> dict[str, tuple[str, str]]:
-        """Meanings and units that the observers bring."""
-        return {k: v for observer in self.observers for k, v in observer.vocabulary.items()}
-
-    @property
     def provenance(self) -> dict[str, Any]:
         """Everything except the chain that determines the numbers, in a form for JSON."""
         same = ("method", "stepper", "merging", "seed", "replicas")
@@ -270,5 +273,7 @@ class Run:
     @property
     def attributes(self) -> dict[str, Any]:
         """What a result says of its run beside the provenance."""
-        flight = "exact" if self.exact else "in steps"
-        return {"flight": flight, "relaxation_time": scales.relaxation_time(self.chain)}
+        return {
+            "flight": "exact" if self.exact else "in steps",
+            "relaxation_time": scales.relaxation_time(self.chain),
+        }

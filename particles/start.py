@@ -101,8 +101,7 @@ def replica_starts(
     # Rounding in x -> y may put touching rods out of order by one unit in the last place of x.
     kind, largest = start.position.dtype, max(float(np.abs(x).max()), chain.radius)
     rounding = 4 * float(np.finfo(kind).eps) if kind.kind == "f" else 0.0
-    tolerance = max(1e-12, rounding) * largest
-    _require_apart(chain, y, tolerance)
+    _require_apart(chain, y, max(1e-12, rounding) * largest)
     apart = np.clip(np.maximum.accumulate(y, axis=1), low, high)
     moved = float(np.abs(apart - y).max())
     if moved > 1e-12 * largest:

@@ -29,7 +29,7 @@ from crazybilliards.kinetic import accuracy
 from crazybilliards.kinetic.accuracy import kind_and_place
 from crazybilliards.model.arrays import middle_tenth
 from crazybilliards.particles.scales import centre_width, correlation_time, default_time_step
-from crazybilliards.particles.step_error import time_step_error
+from crazybilliards.particles.timing import time_step_error
 from studies.common import Table, damped, options, print_table
 
 # Relative accuracy of W_v in the centre, by size.

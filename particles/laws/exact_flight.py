@@ -68,8 +68,7 @@ def make_propagator(chain: Chain, duration: float) -> Propagator:
     shared = sigma[0, 1] / root
     own = math.sqrt(max(sigma[0, 0] - shared**2, 0.0))
     (yy, yv), (vy, vv) = e.tolist()
-    noise = kick * root, kick * h * float(shared), kick * h * own
-    return Propagator(yy, yv * h, vy / h, vv, *noise)
+    return Propagator(yy, yv * h, vy / h, vv, kick * root, kick * h * float(shared), kick * h * own)
 
 
 def _swing(b: Array, w: float, time: float) -> Array:

@@ -159,8 +159,9 @@ def stick(y, v, dt, law, scratch):  # type: ignore[no-untyped-def]
     for i in range(n):
         y[i] += dt * v[i]
     inverse = scratch.inverse[1:-1] if law.high < np.inf else scratch.inverse
-    spare = scratch.floats[0], scratch.floats[1], scratch.floats[2]
-    closed = pool_weighted(y, v, inverse, scratch.integers[0], *spare)
+    closed = pool_weighted(
+        y, v, inverse, scratch.integers[0], scratch.floats[0], scratch.floats[1], scratch.floats[2]
+    )
     for i in range(n):
         if y[i] < law.low or y[i] > law.high:
             y[i], v[i] = min(max(y[i], law.low), law.high), 0.0

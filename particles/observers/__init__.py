@@ -61,13 +61,14 @@ def check_observers(run: Run) -> None:
     owners: dict[str, Observer] = {}
     for observer in run.observers:
         least, walls = observer.least_rods, observer.meets_walls
-        counts = observer.single_collisions or walls
         refusals = {
             f"needs a chain of at least {least} rods": run.chain.size < least,
             "is averaged over time only, not over an ensemble": run.ensemble
             and not observer.ensemble,
             "needs a chain between walls, Chain(box=...)": walls and not run.chain.box,
-            "needs single collisions, which only method='event-driven' sees": counts
+            "needs single collisions, which only method='event-driven' sees": (
+                observer.single_collisions or walls
+            )
             and run.method != "event-driven",
         }
         for reason, refused in refusals.items():

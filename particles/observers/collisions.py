@@ -33,8 +33,7 @@ class Collisions(Averaged):
         self.sums[snapshots.block, :-1] += snapshots.collisions
 
     def report(self, counts: Integers) -> Variables:
-        interval = self.run.every
-        rate = {"collision_rate": lambda average: average / interval}
+        rate = {"collision_rate": lambda average: average / self.run.every}
         variables = self.averages(rate, counts, "particle")
         return checked_rate(self.run, "collision_rate", self.run.chain.restitution, variables)
 
@@ -63,7 +62,6 @@ class Walls(Averaged):
 
     def prepare(self, run: Run, copies: int) -> None:
         super().prepare(run, copies)
-        self.mass = run.chain.mass
         self.current = np.zeros((2, 2))
 
     def tally(self, tally: Tally) -> Tally:
@@ -79,9 +77,9 @@ class Walls(Averaged):
             sums[2, wall] += ((virial - sign * momenta.sum(axis=1)) ** 2).sum() / 4
 
     def report(self, counts: Integers) -> Variables:
-        interval = self.run.every
+        chain, interval = self.run.chain, self.run.every
         quantities = {
-            "wall_force": lambda sums: self.mass / interval * sums[0],
+            "wall_force": lambda sums: chain.mass / interval * sums[0],
             "wall_collision_rate": lambda sums: sums[1] / interval,
         }
         variables = self.averages(quantities, counts, "wall")
@@ -89,8 +87,7 @@ class Walls(Averaged):
             ends = self.sums[:, 2].sum(axis=0) / counts.sum()
             error = np.sqrt(2 * ends * self.run.replicas) / (counts.sum() * interval)
             variables["wall_force_error"] = ("wall",), error
-        e = self.run.chain.wall_restitution
-        return checked_rate(self.run, "wall_collision_rate", e, variables)
+        return checked_rate(self.run, "wall_collision_rate", chain.wall_restitution, variables)
 
     def _keeps_energy(self) -> bool:
         chain = self.run.chain

@@ -39,29 +39,25 @@ class Covariances(Averaged):
 
     def shape(self, run: Run) -> tuple[int, ...]:
         # The products of velocities and those of gaps by separation, and the gaps.
-        return 2 * self._furthest(run) + 3, run.chain.size
+        return 2 * self._numbers(run) + 1, run.chain.size
 
-    def prepare(self, run: Run, copies: int) -> None:
-        super().prepare(run, copies)
-        self.anchors = run.chain.reduced_anchors
-        self.furthest = self._furthest(run)
-
-    def _furthest(self, run: Run) -> int:
-        return min(self.separations, run.chain.size - 1)
+    def _numbers(self, run: Run) -> int:
+        """Return how many separations there are, from 0 on."""
+        return min(self.separations + 1, run.chain.size)
 
     def observe(self, snapshots: Snapshots) -> None:
         # Gaps minus those between the anchors: less is lost when the square of a mean is taken off.
-        gaps = np.diff(snapshots.y - self.anchors, axis=1)
-        sums = self.sums[snapshots.block]
-        for row, values in ((0, snapshots.v), (self.furthest + 1, gaps)):
+        gaps = np.diff(snapshots.y - self.run.chain.reduced_anchors, axis=1)
+        sums, last = self.sums[snapshots.block], self._numbers(self.run)
+        for row, values in ((0, snapshots.v), (last, gaps)):
             size = values.shape[1]
-            for r in range(min(self.furthest + 1, size)):
+            for r in range(min(last, size)):
                 left, right = values[:, : size - r], values[:, r:]
                 sums[row + r, : size - r] += np.einsum("sp,sp->p", left, right)
         sums[-1, :-1] += gaps.sum(axis=0)
 
     def report(self, counts: Integers) -> Variables:
-        last = self.furthest + 1
+        last, anchors = self._numbers(self.run), self.run.chain.reduced_anchors
 
         def of_gaps(average: Array) -> Array:
             products, mean = average[..., last:-1, :-1].copy(), average[..., -1, :-1]
@@ -75,21 +71,21 @@ class Covariances(Averaged):
             return np.asarray((squares[..., 1:] + squares[..., :-1]) / 2 - neighbours)
 
         of_contacts = {
-            "mean_gap": lambda average: average[..., -1, :-1] + np.diff(self.anchors),
+            "mean_gap": lambda average: average[..., -1, :-1] + np.diff(anchors),
             "neighbour_covariance": lambda average: average[..., 1, :-1],
             "relative_temperature": temperature,
         }
-        of_velocities = {
-            "velocity_covariance": lambda average: _within_chain(average[..., :last, :])
-        }
         return {
-            **self.averages(of_velocities, counts, "particle", "separation"),
+            **self.averages(
+                {"velocity_covariance": lambda average: _within_chain(average[..., :last, :])},
+                *(counts, "particle", "separation"),
+            ),
             **self.averages({"gap_covariance": of_gaps}, counts, "contact", "separation"),
             **self.averages(of_contacts, counts, "contact"),
         }
 
     def coordinates(self) -> dict[str, Array]:
-        return {"separation": np.arange(self.furthest + 1, dtype=np.float64)}
+        return {"separation": np.arange(self._numbers(self.run), dtype=np.float64)}
 
 
 def _within_chain(by_separation: Array) -> Array:

@@ -67,11 +67,10 @@ class Density(Averaged):
         super().prepare(run, copies)
         self.x = self._grid(run)
         self.first, self.spacing = self.x[0], self.x[1] - self.x[0]
-        self.offsets = run.chain.physical(np.zeros(run.chain.size))
         self.outside = 0
 
     def observe(self, snapshots: Snapshots) -> None:
-        points = (snapshots.y + self.offsets).ravel()
+        points = self.run.chain.physical(snapshots.y).ravel()
         self.outside += deposit(points, self.first, self.spacing, self.sums[snapshots.block])
 
     def join(self, others: Sequence[Self]) -> None:
@@ -84,15 +83,14 @@ class Density(Averaged):
                 f"density: {self.outside / counts.sum():.3g} rods per snapshot lay outside the "
                 "grid and are missing; observe=cb.observers.Density(reach=...) makes the grid wider"
             )
-        spacing = self.spacing
-        variables = self.averages({"density": lambda average: average / spacing}, counts, "x")
+        variables = self.averages({"density": lambda average: average / self.spacing}, counts, "x")
         dimensions, _ = variables["density"]
         if self.run.ensemble:
             # In an interrupted run a group has no density at times that it did not reach: NaN.
             known = np.where(counts > 0, counts, np.nan)[..., np.newaxis]
-            means = self.sums[:, : counts.shape[-1]] / (known * spacing)
+            means = self.sums[:, : counts.shape[-1]] / (known * self.spacing)
         else:
-            means = self.sums[counts == counts.max()] / (counts.max() * spacing)
+            means = self.sums[counts == counts.max()] / (counts.max() * self.spacing)
         variables["density_block"] = (("block", *dimensions), means)
         variables["outside"] = ((), np.float64(self.outside / counts.sum()))
         return variables

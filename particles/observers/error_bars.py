@@ -23,7 +23,7 @@ def jackknife(
 
     ``counts``, shape (blocks, ...), says how many snapshots went into each block, ``sums`` has
     that shape and further dimensions behind, on which ``function`` works. Blocks without snapshots
-    are left out. With fewer than two blocks the error is unknown, and infinity is returned.
+    are left out. Where fewer than two blocks are left the error is unknown, and infinite.
     """
     begun = counts.reshape(len(counts), -1).any(axis=1)
     if not begun.all():
@@ -38,15 +38,6 @@ def jackknife(
             for part, rest in zip(sums, number - counts, strict=True)
         ]
     )
-    return value, jackknife_error(value, left_out, counts)
-
-
-def jackknife_error(value: Array, left_out: Array, counts: NDArray[np.int64]) -> Array:
-    """Return the standard error from the values with one block left out each, (blocks, ...).
-
-    ``counts`` as in :func:`jackknife`. It is infinite where it is unknown.
-    """
-    number = counts.sum(axis=0)
     used = (counts > 0) & (number - counts > 0)
     blocks = _behind(used.sum(axis=0), value.ndim)
     used, ratio = (
@@ -59,7 +50,7 @@ def jackknife_error(value: Array, left_out: Array, counts: NDArray[np.int64]) ->
     variance = terms.sum(axis=0) / np.maximum(blocks, 1)
     # What one block alone has, the longest lags say, is not a number without it.
     unknown = (blocks < 2) | (np.isnan(variance) & np.isfinite(value))
-    return np.where(unknown, np.inf, np.sqrt(variance))
+    return value, np.where(unknown, np.inf, np.sqrt(variance))
 
 
 def _behind(array: NDArray[Any], dimensions: int) -> NDArray[Any]:

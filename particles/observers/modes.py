@@ -4,13 +4,14 @@ import numpy as np
 
 from crazybilliards.model import WALLS_AND_MASSES, Chain
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
-from crazybilliards.particles.run import Run
 
 
-def momentum_weights(chain: Chain) -> Array:
-    """Return the mass of every rod over the mean mass; exactly 1 if all are equal."""
-    masses = chain.rod_masses / chain.mass
-    return np.asarray(masses / masses.mean())
+def waves_of(chain: Chain, values: Array) -> Array:
+    """Return the waves of the values times the masses of the rods over the mean mass."""
+    from scipy.fft import dct  # takes half a second, and few runs observe waves
+
+    masses = chain.rod_masses / chain.mass  # exactly 1 if all are equal
+    return np.asarray(dct(masses / masses.mean() * values, axis=-1, norm="ortho"))
 
 
 class Modes(Averaged):
@@ -31,14 +32,8 @@ class Modes(Averaged):
     along = ("mode",)
     knows = WALLS_AND_MASSES
 
-    def prepare(self, run: Run, copies: int) -> None:
-        super().prepare(run, copies)
-        self.weights = momentum_weights(run.chain)
-
     def observe(self, snapshots: Snapshots) -> None:
-        from scipy.fft import dct  # takes half a second, and few runs observe modes
-
-        waves = dct(self.weights * snapshots.v, axis=1, norm="ortho")
+        waves = waves_of(self.run.chain, snapshots.v)
         self.sums[snapshots.block] += np.einsum("sq,sq->q", waves, waves)
 
     def report(self, counts: Integers) -> Variables:

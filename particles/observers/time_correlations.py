@@ -9,7 +9,7 @@ from crazybilliards.model.checks import check_integer, check_real
 from crazybilliards.model.kernels import kernel
 from crazybilliards.model.warn import warn_user
 from crazybilliards.particles.observers.base import Array, Averaged, Integers, Snapshots, Variables
-from crazybilliards.particles.observers.modes import momentum_weights
+from crazybilliards.particles.observers.modes import waves_of
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.scales import first_decay, settling_time
 
@@ -157,17 +157,13 @@ class TimeCorrelations(Averaged):
     def prepare(self, run: Run, copies: int) -> None:
         super().prepare(run, copies)
         self.spacing, self.last = self._plan(run)
-        self.anchors, self.weights = run.chain.reduced_anchors, momentum_weights(run.chain)
-        self.spreads = run.chain.spreads and not run.ensemble
         self.needed = _memory(run.chain)  # of a spectrum
         self.before = np.zeros((2, max(self.last, 1), self.sums.shape[-1] - 1))
 
     def observe(self, snapshots: Snapshots) -> None:
-        from scipy.fft import dct  # takes half a second, and few runs observe waves
-
-        used = slice(-snapshots.first % self.spacing, None, self.spacing)
-        rods = np.stack([snapshots.v[used], snapshots.y[used] - self.anchors])
-        waves = dct(self.weights * rods, axis=-1, norm="ortho")[..., : self.waves]
+        used, chain = slice(-snapshots.first % self.spacing, None, self.spacing), self.run.chain
+        rods = np.stack([snapshots.v[used], snapshots.y[used] - chain.reduced_anchors])
+        waves = waves_of(chain, rods)[..., : self.waves]
         now = np.concatenate([rods[..., self.run.chosen], waves], axis=-1)
         sums, new = self.sums[snapshots.block], now.shape[1]
         sums[-2, :-1] += now[1].sum(axis=0)
@@ -197,7 +193,8 @@ class TimeCorrelations(Averaged):
     def _displacements(self, average: Array) -> Array:
         mean, square = (self._means(average, row) for row in (slice(-2, -1), slice(-1, None)))
         covariance = (square[:1] + square - self._increments(average)) / 2 - mean[:1] * mean
-        return np.full_like(covariance, np.nan) if self.spreads else covariance
+        spreads = self.run.chain.spreads and not self.run.ensemble
+        return np.full_like(covariance, np.nan) if spreads else covariance
 
     def _spectrum(self, average: Array) -> Array:
         from scipy.fft import dct
@@ -221,13 +218,11 @@ class TimeCorrelations(Averaged):
             )
         variables: Variables = {}
         for name, (_, measured) in self.averages(kinds, self._joined(counts)).items():
-            values = np.asarray(measured)
-            own, waves = values[:, :rods], values[:, rods:]
+            own, waves = np.split(np.asarray(measured), [rods], axis=1)
             along = "time" if ensemble else "frequency" if "spectrum" in name else "lag"
             for of, over, part in (("", "particle", own), ("wave_", "wave", waves)):
-                variables[of + name] = ((over, along), part.T)
-                if ensemble:
-                    variables[of + name] = ((along, over), part)
+                of_all = ((along, over), part) if ensemble else ((over, along), part.T)
+                variables[of + name] = of_all
             # The first wave is the sum of all rods over the root of their number.
             variables["centre_" + name] = ((along,), waves[:, 0] / self.run.chain.size)
         return variables

@@ -20,8 +20,8 @@ def _standardized(average: Array, order: int) -> Array:
     variance, moment = second - mean**2, third - 3 * mean * second + 2 * mean**3
     if order == 4:
         moment = fourth - 4 * mean * third + 6 * mean**2 * second - 3 * mean**4
-    nothing = np.full_like(moment, np.nan)
-    return np.divide(moment, variance ** (order / 2), where=variance > 0, out=nothing)
+    unknown = np.full_like(moment, np.nan)
+    return np.divide(moment, variance ** (order / 2), where=variance > 0, out=unknown)
 
 
 _QUANTITIES = {

@@ -34,13 +34,8 @@ class Widths(Averaged):
     def shape(self, run: Run) -> tuple[int, ...]:
         return 4, run.chain.size  # sums of d, d^2, v and v^2
 
-    def prepare(self, run: Run, copies: int) -> None:
-        super().prepare(run, copies)
-        self.anchors = run.chain.reduced_anchors
-        self.spreads = run.chain.spreads
-
     def observe(self, snapshots: Snapshots) -> None:
-        d = snapshots.y - self.anchors
+        d = snapshots.y - self.run.chain.reduced_anchors
         sums = self.sums[snapshots.block]
         sums[0] += d.sum(axis=0)
         sums[1] += np.einsum("sp,sp->p", d, d)
@@ -56,7 +51,7 @@ class Widths(Averaged):
         duration = counts.sum() * self.run.stride * self.run.time_step
         # A rod that never moves has no autocorrelation time: 0.
         time = np.divide(spread * duration, 2 * variance, where=variance > 0, out=0 * variance)
-        if self.spreads:
+        if self.run.chain.spreads:
             time[:] = np.inf
         variables["autocorrelation_time"] = (("particle",), time)
         return variables

@@ -36,10 +36,18 @@ class Checkpoint:
     def __init__(self, path: Path, run: Run, interval: float, replicas: Sequence[Replica]) -> None:
         self.path, self.interval, self.replicas = path, interval, replicas
         self.saved = time.monotonic()
-        own = ("average", "duration", "warmup", "time_step", "every")
-        identity = run.chain.parameters() | run.provenance
-        identity |= {name: getattr(run, name) for name in own} | {"schedule": None}
-        identity |= {"version": version("crazybilliards"), "source code": _SOURCE}
+        identity = {
+            **run.chain.parameters(),
+            **run.provenance,
+            "average": run.average,
+            "duration": run.duration,
+            "warmup": run.warmup,
+            "time_step": run.time_step,
+            "every": run.every,
+            "schedule": None,
+            "version": version("crazybilliards"),
+            "source code": _SOURCE,
+        }
         self.identity = json.loads(json.dumps(identity))  # as it will be read back
 
     @contextmanager

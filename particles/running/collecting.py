@@ -14,7 +14,7 @@ from crazybilliards.particles.observers.base import Integers, Variables
 from crazybilliards.particles.run import Run
 from crazybilliards.particles.running.replica import NEVER, Replica
 from crazybilliards.particles.scales import centre_width
-from crazybilliards.particles.step_error import time_step_error
+from crazybilliards.particles.timing import time_step_error
 
 
 def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
@@ -52,7 +52,7 @@ def collect(run: Run, replicas: list[Replica], interrupted: bool) -> xr.Dataset:
         status="interrupted" if interrupted else "diverged" if diverged else "completed",
         end_time=end_time,
         particles=run.chosen + 1,
-        vocabulary=run.vocabulary,
+        vocabulary={k: v for observer in run.observers for k, v in observer.vocabulary.items()},
         method={**run.provenance, "duration": run.duration, "snapshots": int(counts.sum())},
     )
     measured.attrs |= run.attributes | {"time_step_error": _time_step_error(run, measured)}

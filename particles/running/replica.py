@@ -1,7 +1,5 @@
 """One copy of the chain: its start, its state, its random numbers and its measurements."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from threading import Event, Lock
 from typing import Any
@@ -23,11 +21,6 @@ _ROOM = 2**17  # positions in the snapshots between them, which stay in a proces
 _LINE = 8  # numbers in a line of the cache, 64 bytes
 
 NEVER = 2**62
-
-
-def make_replicas(run: Run) -> list[Replica]:
-    """Distribute the replicas of a run over groups, each with observers of its own."""
-    return [Replica(run, each) for each in np.array_split(np.arange(run.replicas), run.groups)]
 
 
 class Replica:
@@ -118,8 +111,7 @@ class Replica:
 
     def _advance(self, steps: int, scratch: Scratch, tally: Tally) -> bool:
         """Take steps without snapshots; return False if the chain diverged."""
-        state = self.y, self.v, self.noise, self.dynamics, scratch, tally
-        if advance(*state, steps) < 0:
+        if advance(self.y, self.v, self.noise, self.dynamics, scratch, tally, steps) < 0:
             self._diverge()
             return False
         self.steps += steps
@@ -140,8 +132,8 @@ class Replica:
         if due == 0:  # the start of an ensemble
             y_buffer[0], v_buffer[0], good = self.y, self.v, 1
         else:
-            state = self.y, self.v, self.noise, self.dynamics, scratch, tally
-            good, _ = record(*state, due, y_buffer[:n], v_buffer[:n])
+            state = self.y, self.v, self.noise, self.dynamics
+            good, _ = record(*state, scratch, tally, due, y_buffer[:n], v_buffer[:n])
         self._observe(block, y_buffer[:good], v_buffer[:good], tally)
         self.counts[block] += good
         self.snapshots += good
@@ -172,6 +164,11 @@ class Replica:
         self.broken = self.patience[0] < NEVER
         if not self.broken:
             self.over, self.reached = True, min(self.reached, self.snapshots // self.length)
+
+
+def make_replicas(run: Run) -> list[Replica]:
+    """Distribute the replicas of a run over groups, each with observers of its own."""
+    return [Replica(run, each) for each in np.array_split(np.arange(run.replicas), run.groups)]
 
 
 def restore(owner: Any, name: str, value: NDArray[Any]) -> None:

@@ -9,7 +9,7 @@ from scipy.linalg import solve_discrete_lyapunov
 
 from crazybilliards.model import Chain
 from crazybilliards.particles.dynamics import make_step
-from crazybilliards.particles.step_error import time_step_error
+from crazybilliards.particles.timing import time_step_error
 
 
 def stationary_widths(stepper, time_step, **parameters):

@@ -26,7 +26,7 @@ STANDS_ON = {
 # What stands on one floor may import what stands there or below, but never in a circle.
 FLOORS = {
     "particles": (
-        {"scales", "step_error", "noise", "laws"},
+        {"scales", "noise", "laws"},
         {"dynamics", "stepping"},
         {"start", "timing"},
         {"run"},
