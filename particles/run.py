@@ -71,9 +71,8 @@ class Run:
     snapshots: int = field(init=False)  # of each replica
     blocks: int = field(init=False)
     block: int = field(init=False)
-    too_short: str = field(
-        init=False, default=""
-    )  # in what it is too short for an average over time
+    # In what it is too short for an average over time.
+    too_short: str = field(init=False, default="")
 
     def __post_init__(self) -> None:
         for name, kinds in (("method", Method), ("stepper", Stepper), ("average", Average)):

@@ -231,6 +231,6 @@ def compile_kernels(flights: Iterable[bool] = (True, False)) -> None:
     for exact in set(flights):
         if exact:
             record_flight(*state, 1, *snapshots)
-        else:  # Counting collisions compiles event_driven.drift and everything others need.
+        else:  # counting collisions compiles event_driven.drift and all that the others need
             record_steps(*state, make_tally(2, contacts=True), 1, *snapshots)
     deposit(y, -1.0, 0.1, np.zeros(30))
