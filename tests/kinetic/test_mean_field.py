@@ -72,4 +72,5 @@ def test_few_rods_and_driven_ones_have_it_always():
         np.testing.assert_array_equal(found.velocity_width, same.velocity_width)
         assert "mean field" in found.attrs["provenance"]
         hotter = chain.restitution > 1
+        assert np.isfinite(same.attrs["border_model_error"]) == hotter
         assert ((found.velocity_width > chain.free_velocity_width) == hotter).all()

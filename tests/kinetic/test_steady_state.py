@@ -7,7 +7,7 @@ import pytest
 
 from crazybilliards.comparison import deviation, smooth
 from crazybilliards.kinetic import equilibrium, steady_state
-from crazybilliards.kinetic.gas import agreement, mean_state
+from crazybilliards.kinetic.gas import agreement, fluctuations, mean_state
 from crazybilliards.kinetic.gas.cells import make_cells
 from crazybilliards.kinetic.gas.mean_state import Medium, mean_slope
 from crazybilliards.kinetic.gas.stationary import rods_of
@@ -206,9 +206,19 @@ def test_cells_of_several_rods_change_little(changes):
     np.testing.assert_allclose(coarse.width, fine.width, rtol=0.01)
 
 
-def test_no_agreement_is_an_error_with_a_reason(monkeypatch):
-    monkeypatch.setattr(agreement, "_MOST_ITERATIONS", 2)
-    with pytest.raises(ValueError, match=r"no steady state that could be.*after 2 iterations"):
+@pytest.mark.parametrize(
+    ("place", "name", "value", "reason"),
+    [
+        (agreement, "_MOST_ITERATIONS", 2, "after 2 iterations"),
+        (mean_state, "_MOST_STEPS", 1, "the forces could not be balanced"),
+        (fluctuations.LinearResponse, "largest_growth", lambda _: 0.5, "grow at the rate 0.5"),
+    ],
+)
+def test_a_state_that_is_not_found_is_an_error_with_a_reason(
+    place, name, value, reason, monkeypatch
+):
+    monkeypatch.setattr(place, name, value)
+    with pytest.raises(ValueError, match=f"no steady state that could be.*{reason}"):
         steady_state(Chain(size=8, restitution=0.75))
 
 
