@@ -67,7 +67,7 @@ def test_few_rods_and_driven_ones_have_it_always():
     """One rod meets nobody, and the centre of mass is as warm as if alone."""
     alone = Chain(size=1, restitution=0.2)
     assert steady_state(alone).velocity_width.item() == pytest.approx(alone.free_velocity_width)
-    for chain in (Chain(size=3, restitution=0.2), Chain(size=30, restitution=1.01)):
+    for chain in (Chain(size=3, restitution=0.2), Chain(size=30, restitution=1.03)):
         found, same = steady_state(chain), steady_state(chain, correlations=False)
         np.testing.assert_array_equal(found.velocity_width, same.velocity_width)
         assert "mean field" in found.attrs["provenance"]
