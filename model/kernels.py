@@ -95,18 +95,27 @@ def _in_one_piece(compile_: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _let_it_fail(disk: Any) -> None:
-    """Make a cache that cannot be read or written a warning; numba makes it an error."""
+    """Make a cache that cannot be written a warning, and empty a damaged one.
+
+    numba makes either an error. What names a class that has moved since cannot be read, either.
+    """
+    read = disk.load_overload
 
     def attempt(work: Callable[..., Any]) -> Callable[..., Any]:
         def attempted(*arguments: Any) -> Any:
             try:
                 return work(*arguments)
-            except Exception as error:  # a damaged file can raise anything
+            except Exception as error:
                 return _warn(getattr(error, "strerror", None) or str(error))
 
         return attempted
 
-    load = attempt(disk.load_overload)
+    @attempt
+    def load(*arguments: Any) -> Any:
+        try:
+            return read(*arguments)
+        except Exception:  # a damaged file can raise anything
+            return disk.flush()
 
     def load_or_announce(*arguments: Any) -> Any:
         compiled = load(*arguments)
