@@ -63,7 +63,9 @@ def test_without_a_folder_for_the_cache_kernels_are_compiled_all_the_same(double
 
 @pytest.mark.compiled
 @pytest.mark.posix
-def test_a_cache_that_cannot_be_written_costs_no_run_and_a_damaged_one_is_made_anew(doubled, tmp_path):
+def test_a_cache_that_cannot_be_written_costs_no_run_and_a_damaged_one_is_made_anew(
+    doubled, tmp_path
+):
     from resource import RLIMIT_FSIZE, getrlimit, setrlimit
 
     cache = tmp_path / "cache"
