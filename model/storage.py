@@ -21,8 +21,6 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-import h5py
-import netCDF4
 import numpy as np
 import xarray as xr
 from filelock import FileLock, Timeout
@@ -96,6 +94,8 @@ def _load(file: Path, whole: bool = True) -> xr.Dataset | xr.DataTree:
         with _LIBRARY:
             _require_own_arrays(content)
             if not whole:
+                import netCDF4
+
                 with netCDF4.Dataset("attributes", memory=content) as opened:
                     return xr.Dataset(attrs=opened.__dict__)
             with xr.open_datatree(content, engine="netcdf4") as tree:
@@ -109,6 +109,8 @@ def _load(file: Path, whole: bool = True) -> xr.Dataset | xr.DataTree:
 
 def _require_own_arrays(content: bytes) -> None:
     """Raise a ValueError unless an HDF5 file is a tree of arrays that lie in it."""
+    import h5py  # takes as long as numpy, and many runs read no file
+
     links: list[tuple[str, object]] = []
     declared = 0
     with h5py.File(io.BytesIO(content)) as file:
