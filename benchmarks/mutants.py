@@ -126,7 +126,7 @@ def _noticed(mutant: Mutant, arguments: list[str]) -> str:
         ended = subprocess.run(pytest, cwd=HERE, capture_output=True, text=True)
     finally:
         path.write_text(before, encoding="utf-8")
-    failed = re.search(r"^(?:FAILED|ERROR) (\S+)", ended.stdout, re.MULTILINE)
+    failed = re.search(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", ended.stdout, re.MULTILINE)
     if failed:
         return failed[1]
     # A test that is no longer there notices nothing.

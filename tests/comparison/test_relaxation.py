@@ -95,7 +95,9 @@ def test_a_gas_in_a_box_moves_as_its_points_do_and_not_as_a_fluid(release, by):
     off = (run.mean_displacement - exact.mean_displacement) / run.mean_displacement_error
     assert float(np.abs(off).max()) < 5
     for time in range(run.sizes["time"]):
-        found = deviation(*(smooth(each).isel(time=time) for each in (run, exact)))
+        found = deviation(  # the error of the few rods whose ends reach a wall is not known
+            *(smooth(each).isel(time=time).sel(x=slice(-40, 40)) for each in (run, exact))
+        )
         assert found.maximum_in_errors < 6  # the largest of a thousand in all
     h, start = GAS.walls[1], exact.mean_displacement[0]
     assert float(np.abs(tree["rods"].mean_displacement[0] - start).max()) < 0.02 * h
