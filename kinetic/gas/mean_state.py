@@ -123,8 +123,6 @@ def balanced(medium: Medium, cells: Cells, y: Array, stress: Array, spread: Arra
         if share == 1 and (largest < 1e-11 or last <= largest < 1e-6):
             break
         last = largest
-    else:
-        raise NoSteadyStateError("the forces could not be balanced")
     room = _steps(y, medium.wall)
     return Balance(y, room / cells.all_distances, pressure / room)
 
