@@ -71,6 +71,8 @@ def main() -> None:
 
     # Pictures go to files. matplotlib would refuse a backend that it does not know.
     os.environ["MPLBACKEND"] = "agg"
+    # The matrices are small. Threads of the linear algebra only wait, in each worker of a sweep.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     with warnings.catch_warnings(), terminated_like_interrupted() as signals:
         warnings.showwarning = lambda message, *_, **__: complain(f"warning: {message}")
         # Commands state the expected errors of theories, unknown ones too.
