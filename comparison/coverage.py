@@ -19,7 +19,7 @@ from scipy.ndimage import convolve1d
 
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.grid import deposit, position_grid, require_all_held, require_even
-from crazybilliards.model.vocabulary import require, result
+from crazybilliards.model.vocabulary import check_result, require, result
 
 _ONCE, _TWICE = "coverage", "coverage, running average"
 _SMOOTHED = {"density", "density_block"}
@@ -49,6 +49,7 @@ def coverage_density(source: xr.Dataset) -> xr.Dataset:
     ValueError
         If the result holds none of these, is smoothed already, or was cut or thinned.
     """
+    check_result(source)
     if "smoothed" in source.attrs:
         raise ValueError("the density is smoothed already")
     return _covered(source, "coverage_density")
@@ -60,6 +61,7 @@ def smooth(source: xr.Dataset) -> xr.Dataset:
     What is smoothed already, as its attribute ``smoothed`` says, stays. A grid that was cut or
     thinned is refused: smooth the whole result first.
     """
+    check_result(source)
     done = source.attrs.get("smoothed")
     if done == _TWICE:
         return source

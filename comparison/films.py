@@ -26,6 +26,7 @@ from crazybilliards.model import WALLS_AND_MASSES, Array, Chain, chain_of
 from crazybilliards.model.checks import check_path, check_real
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import write_atomically
+from crazybilliards.model.vocabulary import check_result
 from crazybilliards.particles import simulate
 
 _A_SECOND = 25  # pictures
@@ -182,6 +183,7 @@ def has_ffmpeg() -> bool:
 
 def _snapshots(run: xr.Dataset) -> xr.Dataset:
     """Return the snapshots of one replica, over time and particle, with known velocities."""
+    check_result(run)
     if not {"position", "velocity"} <= set(run) or {"time", "particle"} - set(run.position.dims):
         raise ValueError(
             "run has no snapshots in time, which simulate(chain, observe='snapshots') records; it "

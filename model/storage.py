@@ -26,6 +26,7 @@ import xarray as xr
 from filelock import FileLock, Timeout
 
 from crazybilliards.model.checks import check_path, require_memory, shown
+from crazybilliards.model.vocabulary import check_result
 from crazybilliards.model.warn import warn_if_diverged
 
 _CLASSIC, _NETCDF_4 = b"CDF", b"\x89HDF"  # the first bytes of a file
@@ -51,6 +52,7 @@ def save(result: xr.Dataset | xr.DataTree, path: str | os.PathLike[str]) -> Path
     path = check_path("path", path)
     if path.suffix != ".nc":
         raise ValueError(f"results are NetCDF files: the name must end in .nc, got {str(path)!r}")
+    check_result(result, xr.Dataset | xr.DataTree)
     write_sealed(path, netcdf(result))
     warn_if_diverged(result, str(path))
     return path

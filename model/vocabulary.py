@@ -221,10 +221,17 @@ def _require_all_rods(chain: Chain, label: ArrayLike) -> None:
 
 def chain_of(dataset: xr.Dataset) -> Chain:
     """Return the chain a result was computed for, read from its provenance."""
+    check_result(dataset)
     try:
         return Chain(**json.loads(dataset.attrs["provenance"])["chain"])
     except (KeyError, TypeError, json.JSONDecodeError) as error:
         raise ValueError("not a crazybilliards result: its provenance names no chain") from error
+
+
+def check_result(result: object, kinds: Any = xr.Dataset) -> None:
+    """Raise a ValueError unless this is a result, of these kinds of xarray."""
+    if not isinstance(result, kinds):
+        raise ValueError(f"not a crazybilliards result: {shown(result)}")
 
 
 def require(dataset: xr.Dataset, names: Collection[str], who: str = "the result") -> None:
@@ -233,8 +240,7 @@ def require(dataset: xr.Dataset, names: Collection[str], who: str = "the result"
     xarray counts from 0 along an axis that has no coordinate, and these would be no positions.
     Warn of a chain that diverged, unless all ``names`` are over time.
     """
-    if not isinstance(dataset, xr.Dataset):
-        raise ValueError(f"not a crazybilliards result: {shown(dataset)}")
+    check_result(dataset)
     for name in names:
         if name not in dataset:
             known = list(map(str, dataset.data_vars))

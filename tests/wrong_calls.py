@@ -36,6 +36,13 @@ cb.given_start(chain, chain.anchors, np.datetime64("2020-01-01")) | velocity mus
 cb.given_start(chain, chain.anchors, np.ma.masked_less(range(5), 2)) | velocity must be numbers
 cb.simulate(chain, seed=[1, 2]) | a Generator of numpy...got [1, 2]
 cb.chain_of(foreign) | names no chain
+cb.force_balance(run, velocity_variance=3) | chain must be a Chain, got a Dataset
+cb.chain_of(chain) | not a crazybilliards result: Chain(size=5
+cb.save(3, "a.nc") | not a crazybilliards result: 3
+cb.film([run]) | not a crazybilliards result: [<xarray.Dataset
+cb.smooth(exact.density) | not a crazybilliards result
+cb.comparison.coverage_density(None) | not a crazybilliards result: None
+cb.run_cases([chain], "a") | a Sweep or a list of cases, and hold Chain(size=5
 cb.deviation(foreign, foreign) | not a crazybilliards result
 cb.comparison.fit_arctanh(-exact) | not displaced outward
 cb.comparison.fit_arctanh(exact.isel(particle=slice(2))) | fit_arctanh: the result has 2 particles

@@ -25,7 +25,7 @@ from tqdm import tqdm
 
 from crazybilliards.comparison.sweeps.case import Case, compute
 from crazybilliards.comparison.sweeps.grid import Sweep
-from crazybilliards.model.checks import check_integer, check_path
+from crazybilliards.model.checks import check_integer, check_path, shown
 from crazybilliards.model.process import end_with_parent
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import locked, make_folder, write_sealed
@@ -81,6 +81,8 @@ def run_cases(
     place = check_path("folder", folder)
     if not isinstance(cases, Sweep):
         cases = list(dict.fromkeys(cases))
+        if wrong := [case for case in cases if not isinstance(case, Case)]:
+            raise TypeError(f"cases are a Sweep or a list of cases, and hold {shown(wrong[0])}")
     short = filter(None, (case.too_short for case in cases))
     if first := next(short, ""):
         number = 1 + sum(1 for _ in short)  # which checks the others

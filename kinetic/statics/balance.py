@@ -50,6 +50,7 @@ from crazybilliards.kinetic.statics.profiles import (
 from crazybilliards.kinetic.statics.variable_temperature import solve_variable_temperature
 from crazybilliards.kinetic.statics.wright_closure import solve_wright_closure
 from crazybilliards.model import WALLS_AND_MASSES, Chain
+from crazybilliards.model.checks import check_chain
 from crazybilliards.model.vocabulary import OF_FLUID
 
 
@@ -115,6 +116,7 @@ def check_force_balance(
     velocity_variance: float | Prescribed | None = None,
 ) -> tuple[Chain, Profile | None, Profile | None]:
     """Raise for a wrong argument; return the elastic chain, <dx>(x) and W^2(x) if given."""
+    check_chain(chain)
     prescribed = read_displacement(chain, displacement)
     chain, variance = read_velocity_variance(chain, velocity_variance)
     if prescribed is not None and variance is not None:
