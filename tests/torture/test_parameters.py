@@ -5,14 +5,15 @@ Hypothesis draws chains and arguments from a list of nasty values (zero, negativ
 ordinary ones. Every call must end in one of three ways:
 
 * a result: finite, ordered where rods are ordered, with the right number of rods;
-* one ValueError or TypeError of one line;
+* one ValueError or TypeError of one line, or a DivergedError of a chain that grows without bound;
 * for a run that would take long: the return after a Ctrl-C, which is sent after two seconds.
 
-Any other exception, any warning, a NaN, a call that outlives Ctrl-C, or one
+Any other exception, any warning but those named here, a NaN, a call that outlives Ctrl-C, or one
 that asks for more address space than the limit set here fails the test.
 """
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -203,6 +204,7 @@ RESTITUTIONS |= {kinetic.critical_size: st.floats(1, 1.1)}
 
 @pytest.mark.filterwarnings("ignore:amplitude=0 and a start at rest")
 @pytest.mark.filterwarnings("ignore:.*spectra are NaN")
+@pytest.mark.filterwarnings("ignore:the share of the rods on the left")
 @pytest.mark.parametrize("function", EXPLORED, ids=lambda function: function.__name__)
 def test_a_result_is_sound_or_refused(function):
     examples, always, drawn = EXPLORED[function]
@@ -259,7 +261,7 @@ def ended(arguments, monkeypatch):
 def require_clear(status, printed):
     """Check how a command ended and what it said."""
     assert "Traceback" not in printed.err
-    assert "nan" not in printed.out
+    assert not re.search(r"\bnan\b", printed.out, re.IGNORECASE)
     if status == 2:
         lines = [line for line in printed.err.splitlines() if line.strip()]
         assert len(lines) == 1, lines
@@ -272,6 +274,8 @@ def require_clear(status, printed):
 @pytest.mark.filterwarnings("ignore:amplitude=0 and a start at rest")
 @pytest.mark.filterwarnings("ignore:.* has no (arctanh fit|theory)")
 @pytest.mark.filterwarnings("ignore:stiffness=0. nothing ties the rods")
+@pytest.mark.filterwarnings("ignore:the share of the rods on the left")
+@pytest.mark.filterwarnings("ignore:.* a chain diverged")
 @pytest.mark.parametrize(("command", "option"), OPTIONS)
 def test_an_option_is_taken_or_refused_in_one_line(command, option, monkeypatch, capsys):
     for value in NASTY:
