@@ -19,12 +19,12 @@ transient at the reference damping, where heat is exchanged more slowly than the
 *Evolving*: W^2 and the third moment q = <(v - V)^3> have their own equations. In the reduced
 coordinate, with D = d/dt + V d/dx, d/dy = (1 - 2 R rho)^-1 d/dx, n = rho/(1 - 2 R rho),
 
-    D W^2 = -2 W^2 V_y - (n q)_y/n - 2 Gamma_T (W^2 - A^2/(2 m gamma)) - a E n W^3,
+    D W^2 = -2 W^2 V_y - (n q)_y/n - 2 Gamma_T (W^2 - A^2/(2 m gamma)) - a zeta n W^3,
     D q   = -3 W^2 (W^2)_y - 3 q V_y - (3 Gamma_T + a c n W) q.
 
 The first terms are the adiabatic compression of a gas with one degree of freedom, closed by the
 fourth moment of a Gaussian, <(v - V)^4> = 3 W^4. The noise exchanges heat at the rate
-Gamma_T = gamma/m. What collisions take from the heat, E, and from the third moment, c, are
+Gamma_T = gamma/m. What collisions take from the heat, zeta, and from the third moment, c, are
 ``energy`` and ``decay`` of :mod:`crazybilliards.kinetic.gas.collision_moments`. A rod meets the
 L - 1 others only, a = 1 - 1/L. Without a gap and at restitution 1 this is exact for Gaussian
 clouds, in which q = 0. *Prescribed*: a number, or a profile W^2(x), at all times.

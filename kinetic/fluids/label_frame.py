@@ -11,10 +11,10 @@ and eta(nu, t) = y/s. The continuity equation holds by construction, and the vel
 with theta = T/(m W^2), which is 1 in the isothermal case. With a temperature theta and the third
 moment q of the velocities, in W^3, obey
 
-    theta_t = -2 theta V_y - (q/eta_nu)_nu - 2 Gamma_T (theta - 1) - L a E theta^(3/2)/eta_nu,
+    theta_t = -2 theta V_y - (q/eta_nu)_nu - 2 Gamma_T (theta - 1) - L a zeta theta^(3/2)/eta_nu,
     q_t = -3 theta theta_y - 3 q V_y - (3 Gamma_T + L a c sqrt(theta)/eta_nu) q,
 
-with f_y = f_nu/eta_nu for any f, and Gamma_T = gamma <1/m> s/W. E, c, a and the limits of q are
+with f_y = f_nu/eta_nu for any f, and Gamma_T = gamma <1/m> s/W. zeta, c, a and the limits of q are
 those of :mod:`.equations`. The flow does not change S = theta eta_nu^2.
 
 **Between walls** the unit of length and the strength K of the springs are those of
@@ -51,7 +51,7 @@ class Exchange(NamedTuple):
     """What the noise and the collisions do to the temperature and the heat flux."""
 
     noise: float  # Gamma_T/Gamma
-    loss: float  # L a E
+    loss: float  # L a zeta
     mixing: float  # L a c
 
 

@@ -30,7 +30,7 @@ class Constants(NamedTuple):
     stiffness: float  # K
     damping: float  # Gamma
     heating: float  # Gamma_T
-    loss: float  # of heat, L a E
+    loss: float  # of heat, L a zeta
     mixing: float  # decay of the heat flux in collisions, L a c
     walled: bool
     exponent: int  # of the springs' potential

@@ -16,9 +16,9 @@ Gamma is gamma u/(m W). y0(l) is the anchor, and F the force of a spring over th
 **Closures.** The fourth moment is that of a Gaussian, 3 T^2. Collisions take Lambda from the sum of
 v^2 of two neighbours per time, and the third moment decays at the rate r,
 
-    Lambda = a E(e) n T^(3/2),      r = 3 Gamma + a c(e) n sqrt(T),
+    Lambda = a zeta(e) n T^(3/2),      r = 3 Gamma + a c(e) n sqrt(T),
 
-where E and c are ``energy`` and ``decay`` of :mod:`.collision_moments`. In time r has one more
+where zeta and c are ``energy`` and ``decay`` of :mod:`.collision_moments`. In time r has one more
 term, n sqrt(T) |T_l|/T, which bounds q where the temperature changes within the free flight of a
 rod. phi = P/(n T) is 1 for points, and less with a gap (:mod:`.descriptions`).
 

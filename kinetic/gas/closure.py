@@ -26,7 +26,7 @@ neighbourhood, which fluctuate. To second order in the relative deviations their
 
 the covariances being those of contacts next to each other. How much gaps fluctuate does not enter.
 
-In the equations of the gas that is Lambda = a E n T^(3/2), with P = n T and
+In the equations of the gas that is Lambda = a zeta n T^(3/2), with P = n T and
 
     a = 2/(1 + e) K F sqrt(Theta/T),
 

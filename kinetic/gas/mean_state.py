@@ -6,7 +6,7 @@ one between the outermost cells and the walls, with the mean gap g = dy/dl and T
 
     P(right) - P(left) = -N F(y - y0),                P = phi T/g,
     2 Gamma N (1 - h - T) = flux(right) - flux(left) + half of the loss at both contacts,
-    flux = -3 n^2 T/r dT/dl,      n = P/T,            loss = a E n T^(3/2) dl.
+    flux = -3 n^2 T/r dT/dl,      n = P/T,            loss = a zeta n T^(3/2) dl.
 
 At a wall half of the velocities are smaller by e_w. There T = e_w T(incoming), because slow rods
 stay longer, and the loss is (1 - e_w) P sqrt(8/pi) sqrt(T/e_w).
