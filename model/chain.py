@@ -236,14 +236,14 @@ class Chain(Parameters):
     @property
     def why_unsteady(self) -> str:
         """The reason why this chain has no steady state; empty if it has one."""
-        if self.amplitude == 0 < self.damping + self.stiffness:
+        if self.amplitude == 0 < self.damping:
             return "amplitude=0: without noise the rods come to rest, the density is singular"
         if self.stiffness == 0 and not self.box:
             return "stiffness=0: nothing ties the rods, they spread for ever"
         if self.damping == 0:
             return (
-                "damping=0: the chain never forgets its start, because nothing takes out the "
-                "energy that the noise puts in"
+                "damping=0: the chain never forgets its start, because only damping takes energy "
+                "out of every motion"
             )
         if self.restitution > (critical := self._critical_restitution()):
             return (
