@@ -87,6 +87,7 @@ def test_progress_needs_no_open_standard_error():
     assert done.returncode == 0
 
 
+@pytest.mark.compiled
 def test_compiling_is_said_once_and_only_to_those_who_asked(capsys, tmp_path, monkeypatch):
     for asked, said in ((False, 0), (True, 1)):
         monkeypatch.setattr("numba.core.config.CACHE_DIR", str(tmp_path / str(said)))
