@@ -18,11 +18,11 @@ PICTURE = Path(__file__).with_suffix(".svg")
 # name: (left, bottom, width, height, colour)
 ROOMS = {
     "apps": (0.0, 20.5, 12.0, 2.3, "#E4DDF3"),
-    "reproduction": (0.0, 15.7, 12.0, 4.5, "#F9DCD0"),
-    "comparison": (0.0, 12.3, 12.0, 3.1, "#F6DDEB"),
-    "particles": (0.0, 4.1, 5.9, 7.8, "#D5E8F5"),
-    "kinetic": (6.1, 4.1, 5.9, 7.8, "#FBE8C3"),
-    "model": (0.0, 0.0, 12.0, 3.7, "#D4EFE6"),
+    "reproduction": (0.0, 17.5, 12.0, 2.7, "#F9DCD0"),
+    "comparison": (0.0, 12.3, 12.0, 4.9, "#F6DDEB"),
+    "particles": (0.0, 4.9, 5.9, 7.0, "#D5E8F5"),
+    "kinetic": (6.1, 4.9, 5.9, 7.0, "#FBE8C3"),
+    "model": (0.0, 0.0, 12.0, 4.5, "#D4EFE6"),
 }
 # From, to, where along the line.
 BETWEEN_ROOMS = (
