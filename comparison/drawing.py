@@ -5,6 +5,7 @@ Pictures have one style, are one or two columns of a journal wide, and their pan
 that are written to files are made without pyplot, and without the settings of the reader.
 """
 
+import math
 import string
 from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager
@@ -239,12 +240,15 @@ def legend_above(figure: Figure, *axes: Axes, title: str | None = None) -> None:
     }
     if not entries:
         return
-    longest = max(len(label.replace("$", "").replace("\\", "")) for label in entries)
-    columns = max(1, int(figure.get_figwidth() / (0.06 * longest + 0.4)))
+    widths = [0.06 * len(label.replace("$", "").replace("\\", "")) + 0.4 for label in entries]
+    in_a_row = len(entries)
+    if sum(widths) > figure.get_figwidth():
+        in_a_row = max(1, int(figure.get_figwidth() / max(widths)))
+    rows = math.ceil(len(entries) / in_a_row)
     figure.legend(
         entries.values(),
         entries.keys(),
         loc="outside upper center",
-        ncols=min(columns, len(entries)),
+        ncols=math.ceil(len(entries) / rows),
         title=title,
     )
