@@ -30,7 +30,7 @@ help:
 	@echo "make cluster    run that of sweeps on a dask cluster (half a minute)"
 	@echo "make test-lowest  run the tests with the oldest allowed version of every package"
 	@echo "make torture    test kills, full disks, bad input and long runs (15 min; docs/reliability.md)"
-	@echo "make coverage   show which lines the tests reach, kernels included (14 min)"
+	@echo "make coverage   show which lines the tests reach, kernels included (9 min)"
 	@echo "make check      check lint, format and types"
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
 	@echo "make reproduce  draw every figure and check every claim of the paper (2 min; QUALITY=full 15 min;"

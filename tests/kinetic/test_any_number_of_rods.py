@@ -6,6 +6,7 @@ from all_rods import require_all_rods
 from every_solver import SOLVERS, Given
 
 from crazybilliards.kinetic import compressed, displaced, force_balance, hydrodynamics, steady_state
+from crazybilliards.kinetic.gas.descriptions import _elastic_share
 from crazybilliards.model import Chain
 from crazybilliards.model.vocabulary import result
 
@@ -55,6 +56,16 @@ def test_one_rod_has_no_gap():
     one, other = (hydrodynamics(Chain(size=1, gap=gap), start, **options) for gap in (0.0, 20.0))
     np.testing.assert_array_equal(one.mean_displacement, other.mean_displacement)
     np.testing.assert_array_equal(one.density, other.density)
+
+
+def test_the_ends_of_a_long_chain_with_a_gap_are_those_of_a_shorter_one(monkeypatch):
+    chain = Chain(size=60, restitution=0.8, gap=2.0)
+    whole = steady_state(chain, correlations=False)
+    monkeypatch.setattr("crazybilliards.kinetic.gas.descriptions._MOST", 40)
+    _elastic_share.cache_clear()
+    of_ends = steady_state(chain, correlations=False)
+    for name in ("velocity_width", "displacement_width", "density"):
+        np.testing.assert_allclose(of_ends[name], whole[name], rtol=1e-9, atol=1e-9, err_msg=name)
 
 
 def test_a_result_without_all_rods_is_refused():
