@@ -26,6 +26,7 @@ import xarray as xr
 from filelock import FileLock, Timeout
 
 from crazybilliards.model.checks import check_path, require_memory, shown
+from crazybilliards.model.process import interrupts_deferred
 from crazybilliards.model.vocabulary import check_result
 from crazybilliards.model.warn import warn_if_diverged
 
@@ -93,7 +94,7 @@ def _load(file: Path, whole: bool = True) -> xr.Dataset | xr.DataTree:
             # Classic NetCDF has no integers beyond 32 bits, which get their 64 back.
             narrow = [name for name, each in old.variables.items() if each.dtype == np.int32]
             return old.assign({name: old.variables[name].astype(np.int64) for name in narrow})
-        with _LIBRARY:
+        with _LIBRARY, interrupts_deferred():
             _require_own_arrays(content)
             if not whole:
                 import netCDF4
@@ -134,7 +135,8 @@ def netcdf(result: xr.Dataset | xr.DataTree) -> bytes:
     """Return a result as the content of a NetCDF-4 file."""
     dask = sys.modules.get("dask")
     # A worker of a dask cluster would ask the scheduler for a lock, which knows none of bytes.
-    with _LIBRARY, dask.config.set(scheduler="threads") if dask else nullcontext():
+    threads = dask.config.set(scheduler="threads") if dask else nullcontext()
+    with _LIBRARY, interrupts_deferred(), threads:
         content = result.to_netcdf(engine="netcdf4")
     # HDF5 leaves unused room behind the end, whose address stands in its first block.
     end = int.from_bytes(content[28:36], "little") if content[8] in (2, 3) else None

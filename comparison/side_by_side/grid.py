@@ -154,8 +154,10 @@ def _computed(
             failed = run_cases(every, place, pool, threads=threads, progress=progress)
         except KeyboardInterrupt:
             status = "interrupted"
-        results = {  # after Ctrl-C some may be missing, or outdated
-            name: {key: case.load(place) for key, case in group.items() if case.is_in(place)}
+        # After Ctrl-C some may be missing, or outdated.
+        done = {c for c in every if c not in failed and (status == "completed" or c.is_in(place))}
+        results = {
+            name: {key: case.load(place) for key, case in group.items() if case in done}
             for name, group in cases.items()
         }
     for case, reason in failed.items():

@@ -15,7 +15,7 @@ from crazybilliards.comparison.side_by_side import grid
 from crazybilliards.comparison.side_by_side.grid import ELASTIC
 from crazybilliards.comparison.side_by_side.grid_figures import draw_density, draw_displacement
 from crazybilliards.comparison.stationary_theories import TITLES
-from crazybilliards.comparison.sweeps import case, running
+from crazybilliards.comparison.sweeps import case, run_cases, running
 from crazybilliards.model import Chain, chain_of
 from crazybilliards.model.process import terminated_like_interrupted
 from crazybilliards.particles import simulate
@@ -154,6 +154,19 @@ def test_a_signal_keeps_what_was_computed(monkeypatch, tmp_path):
     whole = compare(Chain(size=5), {"amplitude": [1, 2]}, **how)
     assert whole.attrs["status"] == "completed"
     assert whole["amplitude_1/simulation"].identical(cut["amplitude_1/simulation"])
+
+
+def test_a_completed_comparison_lacks_no_chain(monkeypatch, tmp_path):
+    """A file that cannot be read when all are there is an error, and not a chain less."""
+
+    def damaged(cases, folder, *executor, **how):
+        failed = run_cases(cases, folder, *executor, **how)
+        cases[1].file(folder).write_bytes(b"")
+        return failed
+
+    monkeypatch.setattr(grid, "run_cases", damaged)
+    with pytest.raises(ValueError, match="truncated"):
+        compare(Chain(size=5), {"amplitude": [1, 2]}, duration=500, folder=tmp_path, progress=False)
 
 
 def test_pictures_show_simulation_and_exact_solution_and_the_differences_of_all_theories(tree):

@@ -11,7 +11,11 @@ from forked import forked
 from crazybilliards.kinetic import displaced, hydrodynamics
 from crazybilliards.model import Chain, progress
 from crazybilliards.model.kernels import announced, kernel
-from crazybilliards.model.process import interrupts_noted, terminated_like_interrupted
+from crazybilliards.model.process import (
+    interrupts_deferred,
+    interrupts_noted,
+    terminated_like_interrupted,
+)
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.particles import simulate
 
@@ -73,6 +77,21 @@ def test_a_command_is_terminated_like_interrupted_and_only_once(number, handle):
         signal.raise_signal(number)
     assert came == [number, number]
     assert signal.getsignal(number) is signal.SIG_DFL
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, *ENDING])
+def test_a_deferred_signal_takes_its_effect_after_the_block(number, handle):
+    went_on = []
+
+    def block():
+        with interrupts_deferred():
+            signal.raise_signal(number)
+            went_on.append(number)
+
+    handle(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
+    with terminated_like_interrupted(), pytest.raises(KeyboardInterrupt):
+        block()
+    assert went_on == [number]
 
 
 @pytest.mark.posix

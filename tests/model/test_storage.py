@@ -2,7 +2,10 @@
 
 import os
 import re
+import signal
+import time
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +41,29 @@ def test_what_is_saved_comes_back_the_same_and_other_programs_can_read_it(datase
     tree = xr.DataTree.from_dict({"a/simulation": dataset, "b": named})
     xr.testing.assert_identical(load(save(tree, path)), tree)
     assert [each.name for each in path.parent.iterdir()] == ["run.nc"]
+
+
+@pytest.mark.posix
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # files left open
+def test_ctrl_c_while_files_are_read_and_written_is_not_lost(dataset, tmp_path):
+    """In h5py some became a SystemError, and xarray kept a lock that the next read waited for."""
+    generator = np.random.default_rng(0)
+    before = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+    interrupted = 0
+    for call in (load, load_attributes, partial(save, dataset)) * 70:
+        path = save(dataset, tmp_path / "run.nc")
+        start = time.perf_counter()
+        call(path)
+        took = time.perf_counter() - start
+        try:
+            signal.setitimer(signal.ITIMER_REAL, generator.uniform(1e-5, took))
+            call(path)
+            signal.setitimer(signal.ITIMER_REAL, 0)
+        except KeyboardInterrupt:
+            interrupted += 1
+    signal.signal(signal.SIGALRM, before)
+    assert interrupted > 100
+    assert load(path).identical(dataset)
 
 
 def test_a_file_of_an_old_sweep_is_read_with_its_types(dataset, tmp_path):

@@ -112,7 +112,9 @@ def prepared():
     """Import and compile everything."""
     # The lock of the progress bars is one semaphore of all forks. A kill that comes while it is
     # held would stop all later attempts. A lock of threads belongs to one process.
-    tqdm.set_lock(threading.RLock())
+    for bars in (kinds := [tqdm]):
+        bars.set_lock(threading.RLock())
+        kinds += bars.__subclasses__()
     mpl.pyplot.close(mpl.pyplot.figure())
     simulate(Chain(size=5, restitution=0.9), duration=200, progress=False)
     with pytest.MonkeyPatch.context() as patch:
@@ -190,7 +192,7 @@ def test_killed_at_random_moments_it_ends_with_the_bits_of_an_undisturbed_run(
         assert final == {path.name for path in clean.results.rglob("*")}
         # Imports that Ctrl-C ends say where, and which error they were about to handle.
         log = place.log.read_text()
-        tracebacks = log.count("Traceback") - log.count("\nDuring handling of")
+        tracebacks = log.count("Traceback (") - log.count("\nDuring handling of")
         assert name.startswith("real") or tracebacks == log.count("\nKeyboardInterrupt")
     every = rows * kills
     print(f"{name}: {running} of {every} kills found it running {duration:.1f} s")
