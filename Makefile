@@ -29,7 +29,7 @@ help:
 	@echo "make validate   run the others: statistics, long runs, kills, wheel, the page in a browser (3 min)"
 	@echo "make cluster    run that of sweeps on a dask cluster (half a minute)"
 	@echo "make test-lowest  run the tests with the oldest allowed version of every package"
-	@echo "make torture    test kills, full disks, bad input and long runs (15 min; docs/reliability.md)"
+	@echo "make torture    test kills, full disks, bad input and long runs (8 min; docs/reliability.md)"
 	@echo "make coverage   show which lines the tests reach, kernels included (9 min)"
 	@echo "make check      check lint, format and types"
 	@echo "make audit      look up known vulnerabilities of every package used (needs the network)"
