@@ -243,7 +243,8 @@ def _result(chain: Chain, fields: FlowFields, times: Array, method: dict[str, An
     x, label, flux = fields.x, fields.label, fields.heat_flux
     rods = label[:, -1] - label[:, 0]
     reduced = x - 2 * chain.radius * (label - chain.size / 2)
-    mean, square = (trapezoid(fields.density * reduced**n, x) / rods for n in (1, 2))
+    mean = trapezoid(fields.density * reduced, x) / rods
+    square = trapezoid(fields.density * (reduced - mean[:, None]) ** 2, x) / rods
     return result(
         chain,
         {
@@ -256,7 +257,7 @@ def _result(chain: Chain, fields: FlowFields, times: Array, method: dict[str, An
             "mean_velocity": (particles, fields.rod_velocities),
             "rods": ("time", rods),
             "centre": ("time", trapezoid(fields.density * x, x) / rods),
-            "cloud_width": ("time", np.sqrt(square - mean**2)),
+            "cloud_width": ("time", np.sqrt(square)),
             "kinetic_energy": ("time", chain.size * chain.mean_mass / 2 * fields.energy),
             "unsteadiness": ("time", fields.unsteadiness),
             **({} if flux is None else {"heat_flux": (along, chain.mean_mass * flux)}),

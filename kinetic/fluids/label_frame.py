@@ -43,7 +43,7 @@ from crazybilliards.model import Array, Chain
 
 _THINNEST = 1e-6  # density of the state at rest at the walls, in L/s
 _EMPTIEST = 5.0  # room of a cell at a wall at the start, in units of that at rest
-_DIVERGED = 1e3  # times the energy of the start or of free rods
+_DIVERGED = 1e3  # times the energy of the start, that of springs included, or of free rods
 _MOST_BROKEN = 0.5  # share of the rods whose heat flux may be at its limit
 
 
@@ -84,7 +84,8 @@ def solve_on_labels(
     cells = make_cells(state, chain.potential_exponent, number)
     constants = _constants(chain, cells, state, exchange)
     fields = _starting_fields(chain, cells, state, start, thermal=thermal)
-    most = _DIVERGED * max(1.0, _energy(cells, np.array(list(fields.values())), walled))
+    values = np.array(list(fields.values()))
+    most = _DIVERGED * max(1.0, _energy(cells, values, walled) + _spring_energy(constants, values))
 
     def watch(values: Array, time: float) -> bool:
         """Refuse what the equations do not describe; return whether the energy diverges."""
@@ -153,6 +154,13 @@ def _energy(cells: LabelCells, values: Array, walled: bool) -> float:
         weights[[0, -1]] /= 2
     heat = weights @ _temperature(cells, values) / weights.sum()
     return float(cells.shares[own] @ values[1, own] ** 2 + heat)
+
+
+def _spring_energy(constants: Constants, values: Array) -> float:
+    """Return the mean of v^2 that rods at rest get where springs release them."""
+    own, power = slice(1, -1) if constants.walled else slice(None), constants.exponent
+    stretched = np.abs(values[0] - constants.lam * constants.labels)[own]
+    return float(2 * constants.stiffness / power * constants.shares[own] @ stretched**power)
 
 
 def _breakdown(cells: LabelCells, values: Array) -> str:
