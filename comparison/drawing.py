@@ -241,9 +241,8 @@ def legend_above(figure: Figure, *axes: Axes, title: str | None = None) -> None:
     if not entries:
         return
     widths = [0.06 * len(label.replace("$", "").replace("\\", "")) + 0.4 for label in entries]
-    in_a_row = len(entries)
-    if sum(widths) > figure.get_figwidth():
-        in_a_row = max(1, int(figure.get_figwidth() / max(widths)))
+    width = figure.get_figwidth()
+    in_a_row = len(entries) if sum(widths) < width else max(1, int(width / max(widths)))
     rows = math.ceil(len(entries) / in_a_row)
     figure.legend(
         entries.values(),

@@ -26,7 +26,6 @@ from crazybilliards.model import WALLS_AND_MASSES, Array, Chain, chain_of
 from crazybilliards.model.checks import check_path, check_real
 from crazybilliards.model.progress import progress_bar
 from crazybilliards.model.storage import write_atomically
-from crazybilliards.model.vocabulary import check_result
 from crazybilliards.particles import simulate
 
 _A_SECOND = 25  # pictures
@@ -183,7 +182,6 @@ def has_ffmpeg() -> bool:
 
 def _snapshots(run: xr.Dataset) -> xr.Dataset:
     """Return the snapshots of one replica, over time and particle, with known velocities."""
-    check_result(run)
     if not {"position", "velocity"} <= set(run) or {"time", "particle"} - set(run.position.dims):
         raise ValueError(
             "run has no snapshots in time, which simulate(chain, observe='snapshots') records; it "
@@ -200,7 +198,7 @@ def _rod_film(
     run: xr.Dataset, pictures: int, springs: bool
 ) -> tuple[Figure, Callable[[int], None], int]:
     """Return a figure of rods, what draws a picture of the film into it, and their number."""
-    rods, chain = _snapshots(run), chain_of(run)
+    chain, rods = chain_of(run), _snapshots(run)
     chain.require_known("film", WALLS_AND_MASSES)
     time, x, v = rods.time.values, rods.position.values, rods.velocity.values
     chosen = np.unique(np.linspace(0, time.size - 1, pictures).round().astype(int))

@@ -65,13 +65,11 @@ def terminated_like_interrupted() -> Iterator[list[int]]:
 def interrupts_deferred() -> Iterator[None]:
     """Let Ctrl-C, SIGTERM and SIGHUP take effect after this block.
 
-    In a library that is written in C a KeyboardInterrupt can become another error, or leave a lock
-    held.
+    A KeyboardInterrupt in a library in C can become another error, or leave a lock held.
     """
     came: list[int] = []
-    numbers = []
-    if threading.current_thread() is threading.main_thread():  # only it may change handlers
-        numbers = [n for n in _ENDING if signal.getsignal(n) not in (signal.SIG_IGN, None)]
+    main = threading.current_thread() is threading.main_thread()  # only it may change handlers
+    numbers = [n for n in _ENDING if main and signal.getsignal(n) not in (signal.SIG_IGN, None)]
     try:
         with _handled(numbers, lambda number, _: came.append(number)):
             yield
