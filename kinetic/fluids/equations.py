@@ -144,8 +144,8 @@ def hydrodynamics(
         at 20 of the times, for others NaN. A warning says if it is above 0.15, as where two streams
         meet, which a fluid does not let through each other.
 
-        ``attrs["status"]`` is ``diverged`` if the energy grew a thousandfold, and ``interrupted``
-        if Ctrl-C ended it. The result then has the times before.
+        ``attrs["status"]`` is ``diverged`` if flow and heat have a thousand times the energy of the
+        start, and ``interrupted`` after Ctrl-C. The result then has the times before.
 
     Raises
     ------

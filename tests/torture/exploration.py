@@ -53,9 +53,8 @@ def require_sound(result):
     """Check a result: finite where it is known, widths and the like not negative, rods in order."""
     if isinstance(result, tuple):
         assert 0 < result.value < math.inf
-        assert 0 <= result.error < math.inf or math.isnan(
-            result.error
-        )  # not measured, as is warned
+        # NaN: not measured, as a warning says.
+        assert math.isnan(result.error) or 0 <= result.error < math.inf
     if not isinstance(result, xr.Dataset) or result.attrs.get("status") == "interrupted":
         return
     for name, values in result.variables.items():
